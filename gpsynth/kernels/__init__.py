@@ -1,0 +1,1 @@
+"""The functions of `operations`, compiled: the only importer of numba. Arrays in, arrays out."""

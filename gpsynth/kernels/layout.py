@@ -1,0 +1,95 @@
+"""What a rollout kernel is told, as tuples of arrays and numbers, and where things stand in its workspace."""
+
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numba import types
+
+from gpsynth.arrays import Floats, Ints
+from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, TENSOR, VECTOR
+
+
+class Rows(NamedTuple):
+    """First rows of the workspace; n states, p parameters, s stages."""
+
+    base: int  # n, the state at the beginning of a step
+    state: int  # n, where the programs read it
+    target: int  # n
+    goal: int  # n
+    time: int  # 1
+    parameter: int  # p
+    slope: int  # s (n + 1), derivatives and running cost of each stage
+    alive: int  # 1, 1.0 while the lane runs
+    arrival: int  # 1, s
+    end: int  # 1, s
+    diverged: int  # 1
+    cost: int  # 1
+    near: int  # 4, clearance, exposure, depth and one row of scratch
+    count: int  # all rows
+
+
+class Code(NamedTuple):
+    """Control law, rates and arrival test, one after the other in the same workspace."""
+
+    instructions: Ints  # (c, 5) operation, destination row, operand rows
+    ends: Ints  # (3,) one past the last instruction of each part
+    constant_rows: Ints
+    constants: Floats
+    rates: Ints  # (n + 1,) rows of the derivatives and of the running cost
+    arrival: Ints  # (1 + q,) rows of the measure and of the terminal costs
+    controls: Ints  # (m,) rows
+    angles: Ints  # (a,) states wrapped to [-pi, pi) after each period
+
+
+class Lanes(NamedTuple):
+    """Which start, parameter vector and schedule each lane has."""
+
+    index: Ints  # (L, 3)
+    starts: Floats  # (S, n)
+    goals: Floats  # (S, n)
+    parameters: Floats  # (C, p)
+    points: Floats  # (K, k, n)
+    ends: Floats  # (K, k) s, when a point stops being the target
+
+
+class Clock(NamedTuple):
+    """The time grid and the Runge-Kutta tableau."""
+
+    a: Floats  # (s, s)
+    b: Floats  # (s,)
+    c: Floats  # (s,)
+    step: float  # s
+    substeps: int  # of a control period
+    periods: int
+    hold: bool  # the control is held over the period, else computed at every stage
+    stop: bool  # a lane ends when it arrives
+
+
+class World(NamedTuple):
+    """Obstacles; none when `position` is empty."""
+
+    position: Ints  # (2,) states that are x and y, or (0,)
+    circles: Floats  # (o, 5) x, y, vx, vy, radius with the robot's radius added
+    area: Floats  # (4,) x_low, x_high, y_low, y_high
+    margin: float  # m, less clearance than this counts as exposure
+
+
+_INTEGER, _NUMBER, _FLAG = types.int64, types.float64, types.boolean
+ROWS = types.NamedUniTuple(_INTEGER, len(Rows._fields), Rows)
+CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, INTEGERS, INTEGERS), Code)
+LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
+CLOCK = types.NamedTuple((MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG), Clock)
+WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
+
+Group = TypeVar("Group", bound=tuple[Any, ...])
+
+
+def sealed(group: Group) -> Group:
+    """The same tuple with read-only views of its arrays: to numba a writable array is another type."""
+    return type(group)(*(_readonly(item) if isinstance(item, np.ndarray) else item for item in group))
+
+
+def _readonly(array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    view = array.view()
+    view.setflags(write=False)
+    return view

@@ -1,0 +1,184 @@
+"""Closed-loop rollouts of many lanes: a lane is one start under one parameter vector and one schedule.
+
+A block of lanes goes through time together. Its workspace `w` has one row a quantity and one column a lane, so every
+inner loop is a plain array loop. What happens in one lane never touches another: results are the same bit for bit
+for any block size and any number of threads.
+"""
+
+import numpy as np
+from numba import types
+
+from gpsynth.kernels import trigonometry
+from gpsynth.kernels.clearance import approach
+from gpsynth.kernels.compile import OUT_MATRIX, OUT_TENSOR, kernel
+from gpsynth.kernels.layout import CLOCK, CODES, LANES, ROWS, WORLD
+from gpsynth.kernels.machine import execute
+
+ARRIVAL, END, COST, CLEARANCE, EXPOSURE, DEPTH, DIVERGED, TERMINAL = range(8)  # columns of the result
+ENORMOUS = 1e10  # a state beyond it has diverged
+INSTANT = 1e-9  # s; a clock reading this close to a switching time has reached it
+
+_INTEGER, _NUMBER = types.int64, types.float64
+
+
+@kernel(types.void(OUT_MATRIX, ROWS, CODES, LANES, _INTEGER, _INTEGER))
+def load(w, rows, code, lanes, first, count):
+    """Set a block up: constants, and for lanes [first, first + count) start, goal, target and parameters."""
+    w[:] = 0.0
+    for k in range(len(code.constants)):
+        w[code.constant_rows[k], :] = code.constants[k]
+    n, p = lanes.starts.shape[1], lanes.parameters.shape[1]
+    for lane in range(count):
+        start, vector = lanes.index[first + lane, 0], lanes.index[first + lane, 1]
+        for i in range(n):
+            w[rows.state + i, lane] = lanes.starts[start, i]
+            w[rows.goal + i, lane] = lanes.goals[start, i]
+            w[rows.target + i, lane] = lanes.goals[start, i]
+        for k in range(p):
+            w[rows.parameter + k, lane] = lanes.parameters[vector, k]
+        w[rows.alive, lane] = 1.0
+        w[rows.arrival, lane] = np.inf
+        w[rows.near, lane] = np.inf
+
+
+@kernel(types.void(OUT_MATRIX, ROWS, LANES, types.int64[::1], _INTEGER, _INTEGER, _NUMBER))
+def retarget(w, rows, lanes, passed, first, count, time):
+    """Move each lane's target to the point of its schedule that is due at `time`; after the last comes the goal."""
+    k, n = lanes.ends.shape[1], lanes.starts.shape[1]
+    for lane in range(count):
+        plan, due = lanes.index[first + lane, 2], passed[lane]
+        while due < k and time >= lanes.ends[plan, due] - INSTANT:
+            due += 1
+        passed[lane] = due
+        for i in range(n):
+            w[rows.target + i, lane] = lanes.points[plan, due, i] if due < k else w[rows.goal + i, lane]
+
+
+@kernel(types.void(OUT_MATRIX, ROWS, CODES, CLOCK, _INTEGER, _INTEGER, _NUMBER))
+def advance(w, rows, code, clock, n, count, time):
+    """One Runge-Kutta step of states and running cost; lanes that have ended stay where they are."""
+    width, h = n + 1, clock.step
+    for i in range(n):
+        for lane in range(count):
+            w[rows.base + i, lane] = w[rows.state + i, lane]
+    for stage in range(len(clock.b)):
+        for i in range(n if stage > 0 else 0):
+            for lane in range(count):
+                w[rows.state + i, lane] = w[rows.base + i, lane]
+            for earlier in range(stage):
+                if clock.a[stage, earlier] != 0.0:
+                    factor, k = h * clock.a[stage, earlier], rows.slope + earlier * width + i
+                    for lane in range(count):
+                        w[rows.state + i, lane] += factor * w[k, lane]
+        for lane in range(count):
+            w[rows.time, lane] = time + clock.c[stage] * h
+        if not clock.hold:
+            execute(code.instructions, 0, code.ends[0], w, count)
+        execute(code.instructions, code.ends[0], code.ends[1], w, count)
+        for i in range(width):
+            for lane in range(count):
+                w[rows.slope + stage * width + i, lane] = w[code.rates[i], lane]
+    for i in range(n):
+        for lane in range(count):
+            w[rows.state + i, lane] = w[rows.base + i, lane]
+    for stage in range(len(clock.b)):
+        factor = h * clock.b[stage]
+        for i in range(n):
+            for lane in range(count):
+                change = factor * w[rows.slope + stage * width + i, lane]
+                w[rows.state + i, lane] += change if w[rows.alive, lane] > 0.0 else 0.0
+        for lane in range(count):
+            change = factor * w[rows.slope + stage * width + n, lane]
+            w[rows.cost, lane] += change if w[rows.alive, lane] > 0.0 else 0.0
+
+
+@kernel(_INTEGER(OUT_MATRIX, ROWS, CODES, CLOCK, _INTEGER, _INTEGER, _NUMBER))
+def judge(w, rows, code, clock, n, count, time):
+    """Mark the lanes that have arrived or diverged at `time`; the number of lanes still running."""
+    execute(code.instructions, code.ends[1], code.ends[2], w, count)
+    running = 0
+    for lane in range(count):
+        if w[rows.alive, lane] == 0.0:
+            continue
+        w[rows.end, lane] = time
+        for i in range(n):
+            if not abs(w[rows.state + i, lane]) <= ENORMOUS:
+                w[rows.diverged, lane] = 1.0
+                w[rows.alive, lane] = 0.0
+        if w[rows.alive, lane] > 0.0 and w[code.arrival[0], lane] <= 0.0:
+            w[rows.arrival, lane] = min(w[rows.arrival, lane], time)
+            w[rows.alive, lane] = 0.0 if clock.stop else 1.0
+        running += 1 if w[rows.alive, lane] > 0.0 else 0
+    return running
+
+
+@kernel(types.void(OUT_MATRIX, ROWS, CODES, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX))
+def store(w, rows, code, n, first, count, result):
+    """Write the block's results, one row a lane; what diverged costs +inf."""
+    q = len(code.arrival) - 1
+    for lane in range(count):
+        out = result[first + lane]
+        bad = w[rows.diverged, lane] > 0.0 or not np.isfinite(w[rows.cost, lane])
+        out[ARRIVAL], out[END] = w[rows.arrival, lane], w[rows.end, lane]
+        out[COST] = np.inf if bad else w[rows.cost, lane]
+        out[CLEARANCE], out[EXPOSURE] = w[rows.near, lane], w[rows.near + 1, lane]
+        out[DEPTH], out[DIVERGED] = w[rows.near + 2, lane], 1.0 if bad else 0.0
+        for k in range(q):
+            out[TERMINAL + k] = w[code.arrival[1 + k], lane]
+        for i in range(n):
+            out[TERMINAL + q + i] = w[rows.state + i, lane]
+
+
+@kernel(types.void(OUT_MATRIX, ROWS, CODES, _INTEGER, _INTEGER, _INTEGER, _INTEGER, _NUMBER, OUT_TENSOR))
+def record(w, rows, code, n, first, count, period, time, trace):
+    """Keep state, control and target of the lanes that have not ended before `time`."""
+    m = len(code.controls)
+    for lane in range(count):
+        if w[rows.end, lane] == time:
+            out = trace[first + lane, period]
+            for i in range(n):
+                out[i] = w[rows.state + i, lane]
+                out[n + m + i] = w[rows.target + i, lane]
+            for k in range(m):
+                out[n + k] = w[code.controls[k], lane]
+
+
+@kernel(types.void(ROWS, CODES, LANES, CLOCK, WORLD, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX, OUT_TENSOR))
+def roll(rows, code, lanes, clock, world, block, first, last, result, trace):
+    """Run lanes [first, last), `block` at a time, into result (L, TERMINAL + q + n).
+
+    `trace` (L, periods + 1, n + m + n) takes state, control and target at each tick unless its length is 0; what a
+    lane does after its end is not recorded. The control at the last tick is the one that would be applied next.
+    """
+    n = lanes.starts.shape[1]
+    w = np.empty((rows.count, block))
+    passed = np.empty(block, np.int64)
+    last_slope = rows.slope + (len(clock.b) - 1) * (n + 1)
+    for begin in range(first, last, block):
+        count = min(block, last - begin)
+        load(w, rows, code, lanes, begin, count)
+        passed[:] = 0
+        for period in range(clock.periods + 1):
+            time = period * clock.substeps * clock.step
+            if lanes.ends.shape[1] > 0:
+                retarget(w, rows, lanes, passed, begin, count, time)
+            running = judge(w, rows, code, clock, n, count, time)
+            if clock.hold or len(trace) > 0:
+                execute(code.instructions, 0, code.ends[0], w, count)
+            if len(trace) > 0:
+                record(w, rows, code, n, begin, count, period, time, trace)
+            if running == 0 or period == clock.periods:
+                break
+            for substep in range(clock.substeps):
+                now = time + substep * clock.step
+                advance(w, rows, code, clock, n, count, now)
+                if len(world.position) > 0:
+                    approach(
+                        *(w, count, rows.base, rows.state, rows.slope, last_slope, rows.alive, rows.near),
+                        *(world.position, world.circles, world.area, now, clock.step, world.margin),
+                    )
+            for k in range(len(code.angles)):
+                row = rows.state + code.angles[k]
+                for lane in range(count):
+                    w[row, lane] = trigonometry.wrap(w[row, lane])
+        store(w, rows, code, n, begin, count, result)
