@@ -1,0 +1,175 @@
+"""The network operator: a formula as an upper triangular matrix of function numbers (Diveev & Sofronova 2008).
+
+Off the diagonal stands the unary function on the edge from row to column, on it the binary function with which the node
+gathers its edges; 0 is no edge, or a source. Numbers are those of the 2022 library, binary functions from 1.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gpsynth.arrays import Ints, frozen
+from gpsynth.builder import Builder, Reference
+from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.errors import EncodingError
+from gpsynth.operations import BINARY_BY_NUMBER, UNARY_BY_NUMBER
+from gpsynth.program import Program
+
+MOST_NODES = 512
+
+# |value| <= 1e8 or NaN for any operand, so that starting nop_mul, max, min or prob_sum from the unit changes nothing
+_BOUNDED = frozenset(
+    (
+        *("nop_square", "tanh_half", "step", "sgn", "cos", "sin", "atan", "clip_unit", "signed_decay"),
+        *("signed_saturation", "sigmoid", "step_open", "sgn_dead_zone", "circle", "nop_mul"),
+    )
+)
+_KEEPS_BOUND = frozenset(("identity", "neg", "half"))
+# from their unit these start with the very value of the first edge, save that -0.0 becomes 0.0
+_STARTS_FREE = frozenset(("add", "signed_abs_sum", "signed_abs_max"))
+_STARTS_FREE_IF_BOUNDED = frozenset(("nop_mul", "max", "min", "prob_sum"))
+
+
+@dataclass(frozen=True, eq=False)
+class Matrix:
+    """A network operator and which of its nodes are what; raises EncodingError if it is not a valid one."""
+
+    psi: Ints  # (L, L)
+    inputs: tuple[int, ...]  # source nodes, in the order of the formula's inputs
+    parameters: tuple[int, ...]  # source nodes
+    outputs: tuple[int, ...]  # nodes that are no sources
+
+    def __post_init__(self) -> None:
+        given = np.asarray(self.psi)
+        if given.ndim != 2 or given.shape[0] != given.shape[1] or given.size == 0:
+            raise EncodingError(f"a network operator is a square matrix, not one of shape {given.shape}")
+        if not np.issubdtype(given.dtype, np.integer):
+            raise EncodingError(f"a network operator has integer entries, not {given.dtype}")
+        if len(given) > MOST_NODES:
+            raise EncodingError(f"{len(given)} nodes; at most {MOST_NODES} are allowed")
+        object.__setattr__(self, "psi", frozen(given.astype(np.int32)))
+        for name in ("inputs", "parameters", "outputs"):
+            object.__setattr__(self, name, tuple(int(node) for node in getattr(self, name)))
+        _check_nodes(self)
+        _check_entries(self)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Matrix) and self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> tuple[object, ...]:
+        return self.psi.shape, self.psi.tobytes(), self.inputs, self.parameters, self.outputs
+
+
+def decode_matrix(
+    matrix: Matrix,
+    inputs: Sequence[str] | None = None,
+    outputs: Sequence[str] | None = None,
+    *,
+    strict: bool = True,
+) -> Program:
+    """The formula of a matrix, without identity edges, nodes that no output needs, and repetitions.
+
+    Strictly, every node starts from the unit of its function, as published; where that cannot be seen in the value (the
+    sign of a zero apart) it is left out. Otherwise a node starts with its first edge: shorter, and the same for values
+    up to 1e8, the unit of max and min and the bound of products. Names default to x0, ... and u0, ...
+    """
+    names = tuple(inputs) if inputs is not None else tuple(f"x{k}" for k in range(len(matrix.inputs)))
+    results = tuple(outputs) if outputs is not None else tuple(f"u{k}" for k in range(len(matrix.outputs)))
+    for kind, given, nodes in (("inputs", names, matrix.inputs), ("outputs", results, matrix.outputs)):
+        if len(given) != len(nodes):
+            raise EncodingError(f"the matrix has {len(nodes)} {kind}, but {len(given)} names were given")
+    return decode_entries(matrix.psi, matrix, names, results, strict=strict)
+
+
+def decode_entries(
+    psi: Ints, nodes: Matrix, inputs: tuple[str, ...], outputs: tuple[str, ...], *, strict: bool
+) -> Program:
+    """As `decode_matrix`, of entries known to be valid; `nodes` says which node is what."""
+    builder = Builder(inputs, ParameterSpace.names(len(nodes.parameters)))
+    edges = _edges(psi, nodes.outputs)
+    values = dict(zip(nodes.inputs + nodes.parameters, builder.inputs + builder.parameters, strict=True))
+    bounded: set[int] = set()
+    for node in sorted(edges):
+        function = BINARY_BY_NUMBER[int(psi[node, node])]
+        name, unit = function.name, function.unit
+        value: Reference | None = None
+        if (
+            strict
+            and name not in _STARTS_FREE
+            and not (name in _STARTS_FREE_IF_BOUNDED and _is_bounded(edges[node][0], bounded))
+        ):
+            assert unit is not None
+            value = builder.constant(unit)
+        for tail, number in edges[node]:
+            edge = UNARY_BY_NUMBER[number].name
+            term = values[tail] if number == 1 else builder.apply(edge, values[tail])
+            value = term if value is None else builder.apply(name, value, term)
+        assert value is not None
+        values[node] = value
+        if name in _BOUNDED or (len(edges[node]) == 1 and _is_bounded(edges[node][0], bounded)):
+            bounded.add(node)
+    return builder.build([values[node] for node in nodes.outputs], outputs)
+
+
+Edge = tuple[int, int]  # tail, number of the unary function
+
+
+def _edges(psi: Ints, outputs: tuple[int, ...]) -> dict[int, list[Edge]]:
+    """The incoming edges, in ascending order of their tails, of every node that is no source and that outputs need."""
+    needed = set(outputs)
+    edges: dict[int, list[Edge]] = {}
+    columns = psi.T.tolist()
+    for node in range(len(columns) - 1, -1, -1):
+        if node in needed and columns[node][node]:
+            column = columns[node]
+            edges[node] = [(tail, number) for tail, number in enumerate(column[:node]) if number]
+            needed.update(tail for tail, _ in edges[node])
+    return edges
+
+
+def _is_bounded(edge: Edge, bounded: set[int]) -> bool:
+    tail, number = edge
+    name = UNARY_BY_NUMBER[number].name
+    return name in _BOUNDED or (name in _KEEPS_BOUND and tail in bounded)
+
+
+def _check_nodes(matrix: Matrix) -> None:
+    size = len(matrix.psi)
+    sources = matrix.inputs + matrix.parameters
+    for node in sources + matrix.outputs:
+        if not 0 <= node < size:
+            raise EncodingError(f"node {node} does not exist; the matrix has nodes 0 to {size - 1}")
+    if len(set(sources)) < len(sources):
+        raise EncodingError(f"inputs {matrix.inputs} and parameters {matrix.parameters} share a node")
+    if not matrix.inputs or not matrix.outputs:
+        raise EncodingError("a network operator needs an input and an output")
+    for node in matrix.outputs:
+        if node in sources:
+            raise EncodingError(f"output node {node} is a source; an output must have incoming edges")
+    for node, function in enumerate(np.diagonal(matrix.psi).tolist()):
+        if node in sources and function != 0:
+            raise EncodingError(f"node {node} is a source, so its diagonal entry must be 0, not {function}")
+        if node not in sources and function == 0:
+            raise EncodingError(f"node {node} has 0 on the diagonal but is neither an input nor a parameter")
+
+
+def _check_entries(matrix: Matrix) -> None:
+    psi = matrix.psi
+    diagonal = np.diagonal(psi)
+    for row, column in np.argwhere(np.tril(psi, -1)):
+        raise EncodingError(
+            f"entry [{row}, {column}] is {psi[row, column]}; below the diagonal all must be 0"
+        )
+    for row, column in np.argwhere((psi < 0) | (psi > len(UNARY_BY_NUMBER))):
+        raise EncodingError(f"entry [{row}, {column}] is {psi[row, column]}; unary functions are 1 to 28")
+    for node in np.flatnonzero(diagonal > len(BINARY_BY_NUMBER)):
+        raise EncodingError(f"entry [{node}, {node}] is {diagonal[node]}; binary functions are 1 to 8")
+    incoming = np.count_nonzero(np.triu(psi, 1), axis=0)
+    for node in np.flatnonzero((diagonal == 0) & (incoming > 0)):
+        raise EncodingError(f"node {node} is a source but has an incoming edge")
+    for node in np.flatnonzero((diagonal != 0) & (incoming == 0)):
+        raise EncodingError(f"node {node} is no source but has no incoming edge")

@@ -1,0 +1,243 @@
+"""Expression trees, one per output, generated, cut and joined by DEAP (Koza 1992; Fortin et al. 2012)."""
+
+import random
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from threading import Lock
+
+import numpy as np
+import numpy.typing as npt
+from deap import gp
+
+from gpsynth.arrays import Floats
+from gpsynth.builder import Builder, Reference
+from gpsynth.encodings.checks import checked_at_least, checked_names, checked_operations
+from gpsynth.encodings.parameters import ParameterSpace, Values
+from gpsynth.errors import EncodingError
+from gpsynth.operations import operation
+from gpsynth.program import Program
+
+_TRIES = 20  # at a random tree that is not too large
+_NEW = "NEW"  # the terminal whose value is still to be drawn
+_deap_lock = (
+    Lock()
+)  # DEAP draws from the one generator of the process, so one thread at a time may lend it ours
+
+
+@dataclass(frozen=True)
+class TreeGenome:
+    """Trees in prefix order: input i is i, a number is n, operation k is n + 1 + k, where n counts the inputs."""
+
+    trees: tuple[tuple[int, ...], ...]
+    values: Values  # of the numbers, in the order of the trees
+
+
+@dataclass(frozen=True)
+class TreeEncoding:
+    """One tree per output; subtrees that occur twice are computed once.
+
+    A child that is higher than `max_height`, larger than `max_size` nodes or has more numbers than `space.count` is
+    replaced by its parent.
+    """
+
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    operations: tuple[str, ...]
+    space: ParameterSpace = ParameterSpace()
+    start_heights: tuple[int, int] = (1, 4)  # of random trees, ramped half-and-half
+    grown_heights: tuple[int, int] = (0, 2)  # of the subtrees that mutation plants
+    max_height: int = 10
+    max_size: int = 60  # nodes per tree
+
+    def __post_init__(self) -> None:
+        checked_names(self.inputs, self.outputs)
+        checked_operations(self.operations)
+        checked_at_least("max_height", self.max_height, 0)
+        checked_at_least("max_size", self.max_size, 1)
+        for name in ("start_heights", "grown_heights"):
+            low, high = getattr(self, name)
+            if not 0 <= low <= high <= self.max_height:
+                raise EncodingError(
+                    f"{name} must rise from 0 or more to max_height {self.max_height}, not ({low}, {high})"
+                )
+
+    def random(self, rng: np.random.Generator) -> TreeGenome:
+        """Trees grown half-and-half."""
+        with _lent(rng):
+            trees = [self._grown() for _ in self.outputs]
+        return self._read(trees, rng)
+
+    def mutate(self, genome: TreeGenome, rng: np.random.Generator) -> TreeGenome:
+        """One subtree replaced by a random one, or one number moved."""
+        if self.space.moves(genome.values, rng):
+            return replace(genome, values=self.space.moved(genome.values, rng))
+        trees = self.to_deap(genome)
+        index = int(rng.integers(len(trees)))
+        with _lent(rng):
+            grow = partial(gp.genHalfAndHalf, min_=self.grown_heights[0], max_=self.grown_heights[1])
+            (trees[index],) = gp.mutUniform(trees[index], expr=grow, pset=self.primitives)
+        return self._read(trees, rng) if self._fits(trees[index]) else genome
+
+    def crossover(
+        self, a: TreeGenome, b: TreeGenome, rng: np.random.Generator
+    ) -> tuple[TreeGenome, TreeGenome]:
+        """Two subtrees of one output exchanged."""
+        ours, theirs = self.to_deap(a), self.to_deap(b)
+        index = int(rng.integers(len(ours)))
+        with _lent(rng):
+            ours[index], theirs[index] = gp.cxOnePoint(ours[index], theirs[index])
+        return self._child(ours, index, a, rng), self._child(theirs, index, b, rng)
+
+    def decode(self, genome: TreeGenome) -> Program:
+        """The trees as one program; each number is a parameter of its own."""
+        builder = Builder(self.inputs, self.space.names(len(genome.values)))
+        unread = list(builder.parameters)
+        roots = [self._root(tree, builder, unread) for tree in reversed(genome.trees)]
+        return builder.build(roots[::-1], self.outputs)
+
+    def parameters(self, genome: TreeGenome) -> Floats:
+        """The numbers in the trees, (p,)."""
+        return np.array(genome.values, dtype=np.float64)
+
+    def with_parameters(self, genome: TreeGenome, values: npt.ArrayLike) -> TreeGenome:
+        """The same trees with other numbers."""
+        return replace(genome, values=self.space.checked(values, len(genome.values)))
+
+    def check(self, genome: TreeGenome) -> None:
+        """Raises EncodingError unless the trees are complete and within the limits."""
+        if len(genome.trees) != len(self.outputs):
+            raise EncodingError(f"expected {len(self.outputs)} trees, got {len(genome.trees)}")
+        known = len(self.inputs) + 1 + len(self.operations)
+        for number, tree in enumerate(genome.trees):
+            if not all(type(code) is int and 0 <= code < known for code in tree):
+                raise EncodingError(f"tree {number} has a code that is not an integer in [0, {known})")
+            if not self._complete(tree):
+                raise EncodingError(f"tree {number} is not one complete tree")
+        numbers = sum(tree.count(len(self.inputs)) for tree in genome.trees)
+        if numbers > self.space.count:
+            raise EncodingError(f"the trees have {numbers} numbers; at most {self.space.count} are allowed")
+        self.space.checked(genome.values, numbers)
+        for number, deap_tree in enumerate(self.to_deap(genome)):
+            if not self._fits(deap_tree):
+                raise EncodingError(
+                    f"tree {number} has height {deap_tree.height} and {len(deap_tree)} nodes; "
+                    f"at most {self.max_height} and {self.max_size} are allowed"
+                )
+
+    @cached_property
+    def primitives(self) -> gp.PrimitiveSet:
+        """DEAP's set: operations by name, inputs as ARG0, ARG1, ...; it only writes trees and computes nothing."""
+        grammar = gp.PrimitiveSet("gpsynth", len(self.inputs))
+        for name in self.operations:
+            grammar.addPrimitive(None, operation(name).arity, name=name)
+        if self.space.count > 0:
+            grammar.addTerminal(None, name=_NEW)
+        return grammar
+
+    def to_deap(self, genome: TreeGenome) -> list[gp.PrimitiveTree]:
+        """The trees as DEAP has them; numbers are terminals that hold their value."""
+        values = iter(genome.values)
+        return [
+            gp.PrimitiveTree(
+                [
+                    gp.Terminal(next(values), False, object) if node is None else node
+                    for node in (self._nodes[code] for code in tree)
+                ]
+            )
+            for tree in genome.trees
+        ]
+
+    @cached_property
+    def _nodes(self) -> tuple[gp.Primitive | gp.Terminal | None, ...]:
+        """The node of each code; None where a number stands."""
+        known = self.primitives.mapping
+        inputs = [known[name] for name in self.primitives.arguments]
+        return (*inputs, None, *[known[name] for name in self.operations])
+
+    @cached_property
+    def _codes(self) -> dict[str, int]:
+        return {node.name: code for code, node in enumerate(self._nodes) if node is not None}
+
+    def _arity(self, code: int) -> int:
+        node = self._nodes[code]
+        return 0 if node is None else int(node.arity)
+
+    def _complete(self, tree: tuple[int, ...]) -> bool:
+        missing = 1
+        for code in tree:
+            if missing == 0:
+                return False
+            missing += self._arity(code) - 1
+        return missing == 0
+
+    def _fits(self, tree: gp.PrimitiveTree) -> bool:
+        return len(tree) <= self.max_size and tree.height <= self.max_height
+
+    def _grown(self) -> gp.PrimitiveTree:
+        for _ in range(_TRIES):
+            tree = gp.PrimitiveTree(gp.genHalfAndHalf(self.primitives, *self.start_heights))
+            if self._fits(tree):
+                return tree
+        return gp.PrimitiveTree(gp.genFull(self.primitives, 0, 0))
+
+    def _child(
+        self, trees: list[gp.PrimitiveTree], index: int, parent: TreeGenome, rng: np.random.Generator
+    ) -> TreeGenome:
+        child = self._read(trees, rng)
+        return child if self._fits(trees[index]) and len(child.values) <= self.space.count else parent
+
+    def _read(self, trees: list[gp.PrimitiveTree], rng: np.random.Generator) -> TreeGenome:
+        """The genome of DEAP's trees; new numbers are drawn, or become inputs where there are enough of them."""
+        room = self.space.count - sum(_is_number(node) for tree in trees for node in tree)
+        number = len(self.inputs)
+        values: list[float] = []
+        coded: list[tuple[int, ...]] = []
+        for tree in trees:
+            codes: list[int] = []
+            for node in tree:
+                if _is_number(node):
+                    codes.append(number)
+                    values.append(node.value)
+                elif node.name != _NEW:
+                    codes.append(self._codes[node.name])
+                elif room > 0:
+                    room -= 1
+                    codes.append(number)
+                    values.extend(self.space.random(rng, 1))
+                else:
+                    codes.append(int(rng.integers(number)))
+            coded.append(tuple(codes))
+        return TreeGenome(tuple(coded), tuple(values))
+
+    def _root(self, tree: tuple[int, ...], builder: Builder, unread: list[Reference]) -> Reference:
+        """The value of a tree, read from its end; so are the numbers not yet read."""
+        stack: list[Reference] = []
+        number = len(self.inputs)
+        for code in reversed(tree):
+            if code < number:
+                stack.append(builder.inputs[code])
+            elif code == number:
+                stack.append(unread.pop())
+            else:
+                arity = self._arity(code)
+                operands = [stack.pop() for _ in range(arity)]
+                stack.append(builder.apply(self.operations[code - number - 1], *operands))
+        return stack[0]
+
+
+def _is_number(node: gp.Primitive | gp.Terminal) -> bool:
+    return isinstance(node, gp.Terminal) and isinstance(node.value, float)
+
+
+@contextmanager
+def _lent(rng: np.random.Generator) -> Iterator[None]:
+    """Makes DEAP draw from our generator, and leaves the process's own as it was."""
+    with _deap_lock:
+        state = random.getstate()
+        random.seed(int(rng.integers(2**63)))
+        try:
+            yield
+        finally:
+            random.setstate(state)
