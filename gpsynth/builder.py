@@ -47,8 +47,7 @@ class Builder:
         same = self._rewritten(name, operands, values)
         if same is not None:
             return same
-        ordered = tuple(sorted(operands)) if row.commutative else operands
-        return self._value((name, *ordered))
+        return self._value((name, *(self._sorted(operands) if row.commutative else operands)))
 
     def inline(
         self, program: Program, inputs: Sequence[Reference], parameters: Sequence[Reference] = ()
@@ -101,6 +100,10 @@ class Builder:
             self._known[key] = len(self._keys)
             self._keys.append(key)
         return self._known[key]
+
+    def _sorted(self, operands: Sequence[Reference]) -> list[Reference]:
+        # Constants last, wherever they came in, so that building a built program again gives the same code.
+        return sorted(operands, key=lambda operand: (self._keys[operand][0] == "constant", operand))
 
     def _operands(self, index: Reference) -> tuple[Reference, ...]:
         kind, *operands = self._keys[index]

@@ -6,6 +6,8 @@ gathers its edges; 0 is no edge, or a source. Numbers are those of the 2022 libr
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial, reduce
+from itertools import chain
 
 import numpy as np
 
@@ -17,6 +19,8 @@ from gpsynth.operations import BINARY_BY_NUMBER, UNARY_BY_NUMBER
 from gpsynth.program import Program
 
 MOST_NODES = 512
+
+Edge = tuple[int, int]  # tail, number of the unary function
 
 # |value| <= 1e8 or NaN for any operand, so that starting nop_mul, max, min or prob_sum from the unit changes nothing
 _BOUNDED = frozenset(
@@ -74,8 +78,8 @@ def decode_matrix(
     """The formula of a matrix, without identity edges, nodes that no output needs, and repetitions.
 
     Strictly, every node starts from the unit of its function, as published; where that cannot be seen in the value (the
-    sign of a zero apart) it is left out. Otherwise a node starts with its first edge: shorter, and the same for values
-    up to 1e8, the unit of max and min and the bound of products. Names default to x0, ... and u0, ...
+    sign of a zero apart) it is left out. Otherwise a node starts with its first edge: shorter, and the same unless a
+    value exceeds 1e8 or the square of one underflows. Names default to x0, ... and u0, ...
     """
     names = tuple(inputs) if inputs is not None else tuple(f"x{k}" for k in range(len(matrix.inputs)))
     results = tuple(outputs) if outputs is not None else tuple(f"u{k}" for k in range(len(matrix.outputs)))
@@ -93,42 +97,34 @@ def decode_entries(
     edges = _edges(psi, nodes.outputs)
     values = dict(zip(nodes.inputs + nodes.parameters, builder.inputs + builder.parameters, strict=True))
     bounded: set[int] = set()
-    for node in sorted(edges):
+    for node in edges:
         function = BINARY_BY_NUMBER[int(psi[node, node])]
-        name, unit = function.name, function.unit
-        value: Reference | None = None
-        if (
-            strict
-            and name not in _STARTS_FREE
-            and not (name in _STARTS_FREE_IF_BOUNDED and _is_bounded(edges[node][0], bounded))
-        ):
-            assert unit is not None
-            value = builder.constant(unit)
-        for tail, number in edges[node]:
-            edge = UNARY_BY_NUMBER[number].name
-            term = values[tail] if number == 1 else builder.apply(edge, values[tail])
-            value = term if value is None else builder.apply(name, value, term)
-        assert value is not None
-        values[node] = value
-        if name in _BOUNDED or (len(edges[node]) == 1 and _is_bounded(edges[node][0], bounded)):
+        name, first = function.name, edges[node][0]
+        free = name in _STARTS_FREE or (name in _STARTS_FREE_IF_BOUNDED and _is_bounded(first, bounded))
+        unit = [] if free or not strict or function.unit is None else [builder.constant(function.unit)]
+        terms = (_term(builder, UNARY_BY_NUMBER[number].name, values[tail]) for tail, number in edges[node])
+        values[node] = reduce(partial(builder.apply, name), chain(unit, terms))
+        if name in _BOUNDED or (len(edges[node]) == 1 and _is_bounded(first, bounded)):
             bounded.add(node)
     return builder.build([values[node] for node in nodes.outputs], outputs)
 
 
-Edge = tuple[int, int]  # tail, number of the unary function
-
-
 def _edges(psi: Ints, outputs: tuple[int, ...]) -> dict[int, list[Edge]]:
-    """The incoming edges, in ascending order of their tails, of every node that is no source and that outputs need."""
+    """The incoming edges of every node that outputs need and that is no source; nodes and tails ascend."""
+    heads, tails = np.nonzero(psi.T)
+    incoming: dict[int, list[Edge]] = {}
+    for head, tail, number in zip(heads.tolist(), tails.tolist(), psi[tails, heads].tolist(), strict=True):
+        if tail != head:
+            incoming.setdefault(head, []).append((tail, number))
     needed = set(outputs)
-    edges: dict[int, list[Edge]] = {}
-    columns = psi.T.tolist()
-    for node in range(len(columns) - 1, -1, -1):
-        if node in needed and columns[node][node]:
-            column = columns[node]
-            edges[node] = [(tail, number) for tail, number in enumerate(column[:node]) if number]
-            needed.update(tail for tail, _ in edges[node])
-    return edges
+    for node in reversed(incoming):
+        if node in needed:
+            needed.update(tail for tail, _ in incoming[node])
+    return {node: edges for node, edges in incoming.items() if node in needed}
+
+
+def _term(builder: Builder, name: str, value: Reference) -> Reference:
+    return value if name == "identity" else builder.apply(name, value)
 
 
 def _is_bounded(edge: Edge, bounded: set[int]) -> bool:

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from threading import Lock
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -50,6 +51,7 @@ class TreeEncoding:
     grown_heights: tuple[int, int] = (0, 2)  # of the subtrees that mutation plants
     max_height: int = 10
     max_size: int = 60  # nodes per tree
+    transfer: float = 0.5  # how often a crossover chooses the two outputs independently
 
     def __post_init__(self) -> None:
         checked_names(self.inputs, self.outputs)
@@ -70,25 +72,26 @@ class TreeEncoding:
         return self._read(trees, rng)
 
     def mutate(self, genome: TreeGenome, rng: np.random.Generator) -> TreeGenome:
-        """One subtree replaced by a random one, or one number moved."""
+        """A subtree replaced, a node replaced, inserted or taken out, or one number moved."""
         if self.space.moves(genome.values, rng):
             return replace(genome, values=self.space.moved(genome.values, rng))
         trees = self.to_deap(genome)
         index = int(rng.integers(len(trees)))
         with _lent(rng):
-            grow = partial(gp.genHalfAndHalf, min_=self.grown_heights[0], max_=self.grown_heights[1])
-            (trees[index],) = gp.mutUniform(trees[index], expr=grow, pset=self.primitives)
-        return self._read(trees, rng) if self._fits(trees[index]) else genome
+            (trees[index],) = self._changed(trees[index])
+        return self._child(trees, index, genome, rng)
 
     def crossover(
         self, a: TreeGenome, b: TreeGenome, rng: np.random.Generator
     ) -> tuple[TreeGenome, TreeGenome]:
-        """Two subtrees of one output exchanged."""
+        """Two subtrees exchanged, mostly of one output; what helps one output may help another."""
         ours, theirs = self.to_deap(a), self.to_deap(b)
-        index = int(rng.integers(len(ours)))
+        i = j = int(rng.integers(len(ours)))
+        if rng.random() < self.transfer:
+            j = int(rng.integers(len(ours)))
         with _lent(rng):
-            ours[index], theirs[index] = gp.cxOnePoint(ours[index], theirs[index])
-        return self._child(ours, index, a, rng), self._child(theirs, index, b, rng)
+            ours[i], theirs[j] = gp.cxOnePoint(ours[i], theirs[j])
+        return self._child(ours, i, a, rng), self._child(theirs, j, b, rng)
 
     def decode(self, genome: TreeGenome) -> Program:
         """The trees as one program; each number is a parameter of its own."""
@@ -174,6 +177,18 @@ class TreeEncoding:
 
     def _fits(self, tree: gp.PrimitiveTree) -> bool:
         return len(tree) <= self.max_size and tree.height <= self.max_height
+
+    def _changed(self, tree: gp.PrimitiveTree) -> tuple[gp.PrimitiveTree]:
+        """DEAP's mutations; a whole new subtree is the commonest, the others are small steps."""
+        draw = random.random()  # noqa: S311 the generator is ours while it is lent
+        if draw < 0.15 and self.operations:
+            return cast(tuple[gp.PrimitiveTree], gp.mutInsert(tree, self.primitives))
+        if draw < 0.3:
+            return cast(tuple[gp.PrimitiveTree], gp.mutShrink(tree))
+        if draw < 0.5:
+            return cast(tuple[gp.PrimitiveTree], gp.mutNodeReplacement(tree, self.primitives))
+        grow = partial(gp.genHalfAndHalf, min_=self.grown_heights[0], max_=self.grown_heights[1])
+        return cast(tuple[gp.PrimitiveTree], gp.mutUniform(tree, expr=grow, pset=self.primitives))
 
     def _grown(self) -> gp.PrimitiveTree:
         for _ in range(_TRIES):

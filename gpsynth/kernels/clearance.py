@@ -9,6 +9,7 @@ import math
 
 import numba
 
+from gpsynth.arrays import Floats, Ints
 from gpsynth.kernels.compile import INTEGERS, MATRIX, OUT_MATRIX, VECTOR, kernel
 
 _INT, _FLOAT = numba.types.int64, numba.types.float64
@@ -16,27 +17,26 @@ _INT, _FLOAT = numba.types.int64, numba.types.float64
 
 @kernel(
     numba.types.void(
-        *(
-            OUT_MATRIX,
-            _INT,
-            _INT,
-            _INT,
-            _INT,
-            _INT,
-            _INT,
-            _INT,
-            INTEGERS,
-            MATRIX,
-            VECTOR,
-            _FLOAT,
-            _FLOAT,
-            _FLOAT,
-        )
+        *(OUT_MATRIX, _INT, _INT, _INT, _INT, _INT, _INT, _INT),
+        *(INTEGERS, MATRIX, VECTOR, _FLOAT, _FLOAT, _FLOAT),
     )
 )
 def approach(
-    w, lanes, before, after, slope0, slope1, alive, out, position, circles, area, time, step, margin
-):
+    w: Floats,
+    lanes: int,
+    before: int,
+    after: int,
+    slope0: int,
+    slope1: int,
+    alive: int,
+    out: int,
+    position: Ints,
+    circles: Floats,
+    area: Floats,
+    time: float,
+    step: float,
+    margin: float,
+) -> None:
     """Update rows out, out+1, out+2 of `w`: clearance (m), exposure (s), depth (m s).
 
     before, after: first rows of the states at `time` and time + step (s); slope0, slope1: of the first and the last
@@ -44,11 +44,12 @@ def approach(
     area: (4,) x_low, x_high, y_low, y_high. Lanes whose row `alive` is 0 keep their values.
     """
     i, j = position[0], position[1]
+    x_low, x_high, y_low, y_high = area[0], area[1], area[2], area[3]
     near = out + 3
     for lane in range(lanes):
         x0, x1, y0, y1 = w[before + i, lane], w[after + i, lane], w[before + j, lane], w[after + j, lane]
-        x_room = min(min(x0, x1) - area[0], area[1] - max(x0, x1))
-        y_room = min(min(y0, y1) - area[2], area[3] - max(y0, y1))
+        x_room = min(min(x0, x1) - x_low, x_high - max(x0, x1))
+        y_room = min(min(y0, y1) - y_low, y_high - max(y0, y1))
         w[near, lane] = min(x_room, y_room)
     for k in range(len(circles)):
         x, y = circles[k, 0] + circles[k, 2] * time, circles[k, 1] + circles[k, 3] * time

@@ -9,10 +9,11 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 from numba import types
+from numba.extending import intrinsic, overload
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -37,6 +38,34 @@ def kernel(signature: Any) -> Callable[[Function], Function]:
     return compiled
 
 
+def widest_vectors() -> None:
+    """Called at the top of a kernel: let LLVM use vectors of 512 bits there, where by default it stops at 256.
+
+    It changes no bit of any result; machines without such vectors ignore it, and so does the interpreter.
+    """
+
+
+def _prefer_512_bits(typing_context: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        set.add(
+            builder.function.attributes, '"prefer-vector-width"="512"'
+        )  # llvmlite's own add knows other names only
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
+_prefer = cast(Callable[[], None], intrinsic(_prefer_512_bits))
+
+
+@overload(widest_vectors, inline="always")
+def _widest_vectors() -> Callable[[], None]:
+    def call() -> None:
+        _prefer()
+
+    return call
+
+
 def cache_folder() -> Path:
     """The folder of this version of the kernels; GPSYNTH_CACHE moves it away from the user's cache folder."""
     digest = hashlib.sha256(numba.__version__.encode())
@@ -53,14 +82,15 @@ def _cache_folder() -> Iterator[bool]:
     Cache files are pickles, so the folder must be the user's own: it is made with mode 0700, and another owner's
     folder is not trusted.
     """
-    folder, before = cache_folder(), numba.config.CACHE_DIR
+    config: Any = numba.config
+    folder, before = cache_folder(), config.CACHE_DIR
     try:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         usable = os.access(folder, os.W_OK) and (os.name != "posix" or folder.stat().st_uid == os.getuid())
     except OSError:
         usable = False
-    numba.config.CACHE_DIR = str(folder) if usable else before
+    config.CACHE_DIR = str(folder) if usable else before
     try:
         yield usable
     finally:
-        numba.config.CACHE_DIR = before
+        config.CACHE_DIR = before

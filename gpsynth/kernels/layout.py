@@ -17,7 +17,6 @@ class Rows(NamedTuple):
     target: int  # n
     goal: int  # n
     time: int  # 1
-    parameter: int  # p
     slope: int  # s (n + 1), derivatives and running cost of each stage
     alive: int  # 1, 1.0 while the lane runs
     arrival: int  # 1, s
@@ -25,7 +24,8 @@ class Rows(NamedTuple):
     diverged: int  # 1
     cost: int  # 1
     near: int  # 4, clearance, exposure, depth and one row of scratch
-    count: int  # all rows
+    parameter: int  # p, behind the programs that do not depend on the law
+    total: int  # all rows
 
 
 class Code(NamedTuple):
@@ -44,7 +44,7 @@ class Code(NamedTuple):
 class Lanes(NamedTuple):
     """Which start, parameter vector and schedule each lane has."""
 
-    index: Ints  # (L, 3)
+    picks: Ints  # (L, 3)
     starts: Floats  # (S, n)
     goals: Floats  # (S, n)
     parameters: Floats  # (C, p)
@@ -82,14 +82,18 @@ CLOCK = types.NamedTuple((MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _
 WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
 
 Group = TypeVar("Group", bound=tuple[Any, ...])
+Array = TypeVar("Array", bound=np.ndarray[Any, Any])
 
 
 def sealed(group: Group) -> Group:
     """The same tuple with read-only views of its arrays: to numba a writable array is another type."""
-    return type(group)(*(_readonly(item) if isinstance(item, np.ndarray) else item for item in group))
+    return type(group)(*(readonly(item) if isinstance(item, np.ndarray) else item for item in group))
 
 
-def _readonly(array: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def readonly(array: Array) -> Array:
+    """The array, or if it can be written a view of it that cannot."""
+    if not array.flags.writeable:
+        return array
     view = array.view()
-    view.setflags(write=False)
+    view.flags.writeable = False
     return view

@@ -11,7 +11,7 @@ from numba import types
 
 from gpsynth.arrays import Floats, Ints
 from gpsynth.kernels import arithmetic, exponentials, network_operator, trigonometry
-from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, OUT_MATRIX, VECTOR, kernel
+from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, OUT_MATRIX, VECTOR, kernel, widest_vectors
 
 BLOCK = 64  # lanes; a workspace of some dozens of rows stays in the first-level cache
 
@@ -19,6 +19,7 @@ BLOCK = 64  # lanes; a workspace of some dozens of rows stays in the first-level
 @kernel(types.void(CODE, types.int64, types.int64, OUT_MATRIX, types.int64))
 def execute(code: Any, first: int, last: int, w: Any, lanes: int) -> None:
     """Run instructions [first, last) of code (c, 5) = operation, destination row, operand rows, on columns of `w`."""
+    widest_vectors()
     for index in range(first, last):
         operation = code[index, 0]
         d, a, b, c = code[index, 1], code[index, 2], code[index, 3], code[index, 4]

@@ -1,11 +1,11 @@
-"""Place the programs of a closed loop in one workspace."""
+"""Place the programs of a closed loop in one workspace: once what stays, then each law."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from gpsynth.arrays import Floats, Ints
-from gpsynth.kernels.layout import Code, Rows
+from gpsynth.arrays import Floats, Ints, frozen
+from gpsynth.kernels.layout import Code, Rows, readonly
 from gpsynth.kernels.machine import place
 
 
@@ -17,44 +17,25 @@ class Instructions(NamedTuple):
     outputs: Ints
 
 
-def rows_of(states: int, parameters: int, stages: int) -> Rows:
-    """Where the quantities of a rollout stand; programs follow from row `count` on."""
-    sizes = (states, states, states, states, 1, parameters, stages * (states + 1), 1, 1, 1, 1, 1, 4, 0)
-    return Rows(*np.concatenate(([0], np.cumsum(sizes)[:-1])).tolist())
-
-
 class Loop(NamedTuple):
-    """The parts of a closed loop, each reading what the ones before it give."""
+    """The parts of a closed loop around its law, each reading what the ones before it give."""
 
-    features: Instructions  # of state and target
-    law: Instructions  # of the features and the parameters
+    features: Instructions  # of state and target; the law reads them and the parameters
     limits: Instructions  # of the law's outputs: the controls
     rates: Instructions  # of state, controls, goal and time: derivatives and running cost
     arrival: Instructions  # of state and goal: measure and terminal costs
 
 
-def pack(rows: Rows, loop: Loop, *, states: int, parameters: int, angles: Ints) -> tuple[Rows, Code]:
-    """The workspace of a closed loop and its code."""
-    state, target = np.arange(states) + rows.state, np.arange(states) + rows.target
-    goal, vector = np.arange(states) + rows.goal, np.arange(parameters) + rows.parameter
-    features, free = _placed(loop.features, np.concatenate((state, target)), rows.count)
-    law, free = _placed(loop.law, np.concatenate((features.outputs, vector)), free)
-    limits, free = _placed(loop.limits, law.outputs, free)
-    rates, free = _placed(loop.rates, np.concatenate((state, limits.outputs, goal, [rows.time])), free)
-    arrival, free = _placed(loop.arrival, np.concatenate((state, goal)), free)
-    parts = (features, law, limits, rates, arrival)
-    ends = np.cumsum([len(part.code) for part in parts])
-    code = Code(
-        instructions=np.concatenate([part.code for part in parts]),
-        ends=ends[2:].astype(np.int32),
-        constant_rows=np.concatenate([part.constant_rows for part in parts]),
-        constants=np.concatenate([part.constants for part in loop]),
-        rates=rates.outputs,
-        arrival=arrival.outputs,
-        controls=limits.outputs,
-        angles=angles,
-    )
-    return rows._replace(count=free), code
+class Frame(NamedTuple):
+    """A closed loop placed in a workspace, with room for a law after its last row."""
+
+    rows: Rows
+    features: Ints  # (f,) rows of the law's inputs
+    before: Ints  # (., 5) instructions ahead of the law
+    after: Ints  # (., 5) instructions behind it
+    reads: Ints  # positions in `after`, flattened, of operands that are outputs of the law
+    outputs: Ints  # which output each of them is
+    code: Code  # without a law; `ends` counts from the law's last instruction
 
 
 class _Placed(NamedTuple):
@@ -63,10 +44,67 @@ class _Placed(NamedTuple):
     outputs: Ints
 
 
+def rows_of(states: int, stages: int) -> Rows:
+    """Where the quantities of a rollout stand; programs follow from row `total` on, parameters after them."""
+    sizes = (states, states, states, states, 1, stages * (states + 1), 1, 1, 1, 1, 1, 4)
+    first = np.concatenate(([0], np.cumsum(sizes))).tolist()
+    return Rows(*first, *first[-1:])
+
+
+def frame(loop: Loop, *, states: int, stages: int, angles: Ints) -> Frame:
+    """The workspace of a closed loop and everything in it but the law; angles: (a,) states to be wrapped."""
+    rows = rows_of(states, stages)
+    state, target, goal = (_range(first, states) for first in (rows.state, rows.target, rows.goal))
+    raw = -1 - _range(0, len(loop.limits.outputs))  # operands that `pack` replaces by the law's outputs
+    features, free = _placed(loop.features, np.concatenate((state, target)), rows.total)
+    limits, free = _placed(loop.limits, raw, free)
+    rates, free = _placed(
+        loop.rates, np.concatenate((state, limits.outputs, goal, _range(rows.time, 1))), free
+    )
+    arrival, free = _placed(loop.arrival, np.concatenate((state, goal)), free)
+    parts = (features, limits, rates, arrival)
+    after = np.concatenate((limits.code, rates.code, arrival.code))
+    operands = after.reshape(-1)
+    reads = np.flatnonzero(operands < 0)
+    code = Code(
+        instructions=features.code,
+        ends=np.cumsum([len(part.code) for part in parts[1:]]).astype(np.int32),
+        constant_rows=np.concatenate([part.constant_rows for part in parts]),
+        constants=np.concatenate([part.constants for part in loop]),
+        rates=frozen(rates.outputs),
+        arrival=frozen(arrival.outputs),
+        controls=frozen(limits.outputs),
+        angles=frozen(angles),
+    )
+    placed = rows._replace(parameter=free, total=free)
+    outputs = (-1 - operands[reads]).astype(np.int32)
+    return Frame(placed, features.outputs, features.code, after, reads.astype(np.int32), outputs, code)
+
+
+def pack(around: Frame, law: Instructions, parameters: int) -> tuple[Rows, Code]:
+    """The workspace and the code of the closed loop with this law."""
+    first = around.rows.parameter
+    inputs = np.concatenate((around.features, _range(first, parameters)))
+    placed, free = _placed(law, inputs, first + parameters)
+    after = around.after.copy()
+    after.reshape(-1)[around.reads] = placed.outputs[around.outputs]
+    code = around.code._replace(
+        instructions=readonly(np.concatenate((around.before, placed.code, after))),
+        ends=readonly(around.code.ends + np.int32(len(around.before) + len(placed.code))),
+        constant_rows=readonly(np.concatenate((around.code.constant_rows, placed.constant_rows))),
+        constants=readonly(np.concatenate((around.code.constants, law.constants))),
+    )
+    return around.rows._replace(total=free), code
+
+
 def _placed(part: Instructions, inputs: Ints, first: int) -> tuple[_Placed, int]:
     """A program moved to the workspace rows from `first` on, and the first row after it."""
     computed = first + len(part.constants)
     free = computed + len(part.code)
-    rows = np.concatenate((inputs, np.arange(first, free))).astype(np.int32)
-    constant_rows = np.arange(first, computed, dtype=np.int32)
+    rows = np.concatenate((inputs, _range(first, free - first)))
+    constant_rows = _range(first, len(part.constants))
     return _Placed(place(part.code, computed, rows), constant_rows, rows[part.outputs]), free
+
+
+def _range(first: int, count: int) -> Ints:
+    return np.arange(first, first + count, dtype=np.int32)

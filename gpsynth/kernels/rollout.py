@@ -6,12 +6,14 @@ for any block size and any number of threads.
 """
 
 import numpy as np
+import numpy.typing as npt
 from numba import types
 
+from gpsynth.arrays import Floats
 from gpsynth.kernels import trigonometry
 from gpsynth.kernels.clearance import approach
-from gpsynth.kernels.compile import OUT_MATRIX, OUT_TENSOR, kernel
-from gpsynth.kernels.layout import CLOCK, CODES, LANES, ROWS, WORLD
+from gpsynth.kernels.compile import OUT_MATRIX, OUT_TENSOR, kernel, widest_vectors
+from gpsynth.kernels.layout import CLOCK, CODES, LANES, ROWS, WORLD, Clock, Code, Lanes, Rows, World
 from gpsynth.kernels.machine import execute
 
 ARRIVAL, END, COST, CLEARANCE, EXPOSURE, DEPTH, DIVERGED, TERMINAL = range(8)  # columns of the result
@@ -22,14 +24,14 @@ _INTEGER, _NUMBER = types.int64, types.float64
 
 
 @kernel(types.void(OUT_MATRIX, ROWS, CODES, LANES, _INTEGER, _INTEGER))
-def load(w, rows, code, lanes, first, count):
+def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int) -> None:
     """Set a block up: constants, and for lanes [first, first + count) start, goal, target and parameters."""
     w[:] = 0.0
     for k in range(len(code.constants)):
         w[code.constant_rows[k], :] = code.constants[k]
     n, p = lanes.starts.shape[1], lanes.parameters.shape[1]
     for lane in range(count):
-        start, vector = lanes.index[first + lane, 0], lanes.index[first + lane, 1]
+        start, vector = lanes.picks[first + lane, 0], lanes.picks[first + lane, 1]
         for i in range(n):
             w[rows.state + i, lane] = lanes.starts[start, i]
             w[rows.goal + i, lane] = lanes.goals[start, i]
@@ -42,11 +44,13 @@ def load(w, rows, code, lanes, first, count):
 
 
 @kernel(types.void(OUT_MATRIX, ROWS, LANES, types.int64[::1], _INTEGER, _INTEGER, _NUMBER))
-def retarget(w, rows, lanes, passed, first, count, time):
+def retarget(
+    w: Floats, rows: Rows, lanes: Lanes, passed: npt.NDArray[np.int64], first: int, count: int, time: float
+) -> None:
     """Move each lane's target to the point of its schedule that is due at `time`; after the last comes the goal."""
     k, n = lanes.ends.shape[1], lanes.starts.shape[1]
     for lane in range(count):
-        plan, due = lanes.index[first + lane, 2], passed[lane]
+        plan, due = lanes.picks[first + lane, 2], passed[lane]
         while due < k and time >= lanes.ends[plan, due] - INSTANT:
             due += 1
         passed[lane] = due
@@ -55,65 +59,69 @@ def retarget(w, rows, lanes, passed, first, count, time):
 
 
 @kernel(types.void(OUT_MATRIX, ROWS, CODES, CLOCK, _INTEGER, _INTEGER, _NUMBER))
-def advance(w, rows, code, clock, n, count, time):
+def advance(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, time: float) -> None:
     """One Runge-Kutta step of states and running cost; lanes that have ended stay where they are."""
+    widest_vectors()
     width, h = n + 1, clock.step
     for i in range(n):
         for lane in range(count):
             w[rows.base + i, lane] = w[rows.state + i, lane]
+    first = code.ends[0] if clock.hold else 0
     for stage in range(len(clock.b)):
         for i in range(n if stage > 0 else 0):
+            state = rows.state + i
             for lane in range(count):
-                w[rows.state + i, lane] = w[rows.base + i, lane]
+                w[state, lane] = w[rows.base + i, lane]
             for earlier in range(stage):
                 if clock.a[stage, earlier] != 0.0:
                     factor, k = h * clock.a[stage, earlier], rows.slope + earlier * width + i
                     for lane in range(count):
-                        w[rows.state + i, lane] += factor * w[k, lane]
+                        w[state, lane] += factor * w[k, lane]
+        now = time + clock.c[stage] * h
         for lane in range(count):
-            w[rows.time, lane] = time + clock.c[stage] * h
-        if not clock.hold:
-            execute(code.instructions, 0, code.ends[0], w, count)
-        execute(code.instructions, code.ends[0], code.ends[1], w, count)
+            w[rows.time, lane] = now
+        execute(code.instructions, first, code.ends[1], w, count)
         for i in range(width):
+            slope, rate = rows.slope + stage * width + i, code.rates[i]
             for lane in range(count):
-                w[rows.slope + stage * width + i, lane] = w[code.rates[i], lane]
+                w[slope, lane] = w[rate, lane]
     for i in range(n):
         for lane in range(count):
             w[rows.state + i, lane] = w[rows.base + i, lane]
     for stage in range(len(clock.b)):
         factor = h * clock.b[stage]
-        for i in range(n):
+        for i in range(width):
+            total, k = (rows.state + i if i < n else rows.cost), rows.slope + stage * width + i
             for lane in range(count):
-                change = factor * w[rows.slope + stage * width + i, lane]
-                w[rows.state + i, lane] += change if w[rows.alive, lane] > 0.0 else 0.0
-        for lane in range(count):
-            change = factor * w[rows.slope + stage * width + n, lane]
-            w[rows.cost, lane] += change if w[rows.alive, lane] > 0.0 else 0.0
+                moved = w[total, lane] + factor * w[k, lane]
+                w[total, lane] = moved if w[rows.alive, lane] > 0.0 else w[total, lane]
 
 
 @kernel(_INTEGER(OUT_MATRIX, ROWS, CODES, CLOCK, _INTEGER, _INTEGER, _NUMBER))
-def judge(w, rows, code, clock, n, count, time):
+def judge(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, time: float) -> int:
     """Mark the lanes that have arrived or diverged at `time`; the number of lanes still running."""
+    widest_vectors()
     execute(code.instructions, code.ends[1], code.ends[2], w, count)
-    running = 0
     for lane in range(count):
-        if w[rows.alive, lane] == 0.0:
-            continue
-        w[rows.end, lane] = time
-        for i in range(n):
-            if not abs(w[rows.state + i, lane]) <= ENORMOUS:
-                w[rows.diverged, lane] = 1.0
-                w[rows.alive, lane] = 0.0
-        if w[rows.alive, lane] > 0.0 and w[code.arrival[0], lane] <= 0.0:
-            w[rows.arrival, lane] = min(w[rows.arrival, lane], time)
-            w[rows.alive, lane] = 0.0 if clock.stop else 1.0
+        w[rows.end, lane] = time if w[rows.alive, lane] > 0.0 else w[rows.end, lane]
+    for i in range(n):
+        for lane in range(count):
+            lost = (w[rows.alive, lane] > 0.0) & (not abs(w[rows.state + i, lane]) <= ENORMOUS)
+            w[rows.diverged, lane] = 1.0 if lost else w[rows.diverged, lane]
+    for lane in range(count):
+        w[rows.alive, lane] = 0.0 if w[rows.diverged, lane] > 0.0 else w[rows.alive, lane]
+    running, measure = 0, code.arrival[0]
+    for lane in range(count):
+        arrives = (w[rows.alive, lane] > 0.0) & (w[measure, lane] <= 0.0)
+        earliest = time if time < w[rows.arrival, lane] else w[rows.arrival, lane]
+        w[rows.arrival, lane] = earliest if arrives else w[rows.arrival, lane]
+        w[rows.alive, lane] = 0.0 if arrives & clock.stop else w[rows.alive, lane]
         running += 1 if w[rows.alive, lane] > 0.0 else 0
     return running
 
 
 @kernel(types.void(OUT_MATRIX, ROWS, CODES, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX))
-def store(w, rows, code, n, first, count, result):
+def store(w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, result: Floats) -> None:
     """Write the block's results, one row a lane; what diverged costs +inf."""
     q = len(code.arrival) - 1
     for lane in range(count):
@@ -130,7 +138,9 @@ def store(w, rows, code, n, first, count, result):
 
 
 @kernel(types.void(OUT_MATRIX, ROWS, CODES, _INTEGER, _INTEGER, _INTEGER, _INTEGER, _NUMBER, OUT_TENSOR))
-def record(w, rows, code, n, first, count, period, time, trace):
+def record(
+    w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, period: int, time: float, trace: Floats
+) -> None:
     """Keep state, control and target of the lanes that have not ended before `time`."""
     m = len(code.controls)
     for lane in range(count):
@@ -143,15 +153,34 @@ def record(w, rows, code, n, first, count, period, time, trace):
                 out[n + k] = w[code.controls[k], lane]
 
 
+@kernel(OUT_MATRIX(_INTEGER, _INTEGER))
+def workspace(rows: int, columns: int) -> Floats:
+    """An array (rows, columns) that begins at a cache line, so that no vector straddles two."""
+    flat = np.empty(rows * columns + 7)
+    skipped = -(flat.ctypes.data // 8) % 8
+    return flat[skipped : skipped + rows * columns].reshape((rows, columns))
+
+
 @kernel(types.void(ROWS, CODES, LANES, CLOCK, WORLD, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX, OUT_TENSOR))
-def roll(rows, code, lanes, clock, world, block, first, last, result, trace):
+def roll(
+    rows: Rows,
+    code: Code,
+    lanes: Lanes,
+    clock: Clock,
+    world: World,
+    block: int,
+    first: int,
+    last: int,
+    result: Floats,
+    trace: Floats,
+) -> None:
     """Run lanes [first, last), `block` at a time, into result (L, TERMINAL + q + n).
 
     `trace` (L, periods + 1, n + m + n) takes state, control and target at each tick unless its length is 0; what a
     lane does after its end is not recorded. The control at the last tick is the one that would be applied next.
     """
     n = lanes.starts.shape[1]
-    w = np.empty((rows.count, block))
+    w = workspace(rows.total, block)
     passed = np.empty(block, np.int64)
     last_slope = rows.slope + (len(clock.b) - 1) * (n + 1)
     for begin in range(first, last, block):
@@ -180,5 +209,6 @@ def roll(rows, code, lanes, clock, world, block, first, last, result, trace):
             for k in range(len(code.angles)):
                 row = rows.state + code.angles[k]
                 for lane in range(count):
-                    w[row, lane] = trigonometry.wrap(w[row, lane])
+                    wrapped = trigonometry.wrap(w[row, lane])
+                    w[row, lane] = wrapped if w[rows.alive, lane] > 0.0 else w[row, lane]
         store(w, rows, code, n, begin, count, result)

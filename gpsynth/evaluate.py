@@ -1,0 +1,169 @@
+"""Costs of many candidates at once: laws, parameter vectors and schedules, each from every start of a problem."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gpsynth.arrays import Floats, Ints, frozen
+from gpsynth.errors import ProblemError
+from gpsynth.kernels import rollout
+from gpsynth.kernels.layout import Clock, Lanes, World, sealed
+from gpsynth.kernels.pack import Frame, Instructions, Loop, frame, pack
+from gpsynth.kernels.tableaus import TABLEAUS
+from gpsynth.law import Law
+from gpsynth.problem import Problem
+from gpsynth.program import Program
+
+_NO_POINTS, _NO_ENDS = frozen(np.empty((1, 0, 1))), frozen(np.empty((1, 0)))
+_NO_TRACE = np.empty((0, 0, 0))
+
+
+@dataclass(frozen=True)
+class Rollouts:
+    """What became of N candidates from S starts."""
+
+    arrival: Floats  # (N, S) s, infinity where the goal was not reached
+    end: Floats  # (N, S) s, when the rollout ended
+    cost: Floats  # (N, S) running cost, infinity where the rollout diverged
+    clearance: Floats  # (N, S) m, smallest along the path, robot radius deducted; infinity without obstacles
+    exposure: Floats  # (N, S) s with less clearance than the margin
+    depth: Floats  # (N, S) m s, integral of what was missing of the margin
+    diverged: Floats  # (N, S) 1.0 where the rollout diverged
+    terminal: Floats  # (N, S, q)
+    final: Floats  # (N, S, n)
+
+
+@dataclass(frozen=True)
+class Evaluator:
+    """Rolls candidates out on a problem, `threads` slices of lanes at a time.
+
+    `margin` (m) is the clearance below which a path counts as exposed.
+    """
+
+    problem: Problem
+    threads: int = 1
+    block: int = 64
+    margin: float = 0.0
+
+    def of_program(self, program: Program, parameters: Floats) -> Rollouts:
+        """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p)."""
+        vectors = np.atleast_2d(np.asarray(parameters, dtype=np.float64))
+        if vectors.shape[1] != len(program.parameters):
+            raise ProblemError(
+                f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
+            )
+        return self._roll(program, vectors, _NO_POINTS, _NO_ENDS, len(vectors), self.problem.horizon)
+
+    def of_schedules(self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None) -> Rollouts:
+        """Rollouts (N, S) of one law under N schedules: points (N, k, n) and their dwell times (N, k) in s."""
+        ends = np.cumsum(dwell, axis=1)
+        vectors = law.parameters[np.newaxis]
+        horizon = self.problem.horizon if horizon is None else horizon
+        return self._roll(law.program, vectors, points, ends, len(points), horizon)
+
+    def _roll(
+        self, program: Program, vectors: Floats, points: Floats, ends: Floats, candidates: int, horizon: float
+    ) -> Rollouts:
+        starts = len(self.problem.starts)
+        lane = np.arange(candidates * starts, dtype=np.int32)
+        picks = np.zeros((len(lane), 3), dtype=np.int32)
+        picks[:, 0] = lane % starts
+        picks[:, 1 if len(vectors) > 1 else 2] = lane // starts
+        if ends.shape[1] == 0:
+            picks[:, 2] = 0
+        lanes = self._lanes(picks, vectors, points, ends)
+        result = roll(self, program, lanes, horizon, _NO_TRACE)
+        return _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
+
+    def _lanes(self, picks: Ints, vectors: Floats, points: Floats, ends: Floats) -> Lanes:
+        lanes = Lanes(
+            picks=picks,
+            starts=self.problem.starts,
+            goals=self.goals,
+            parameters=np.ascontiguousarray(vectors),
+            points=np.ascontiguousarray(points, dtype=np.float64),
+            ends=np.ascontiguousarray(ends, dtype=np.float64),
+        )
+        return sealed(lanes)
+
+    @cached_property
+    def world(self) -> World:
+        """The problem's obstacles as the kernels want them."""
+        obstacles = self.problem.obstacles
+        if obstacles is None:
+            nowhere = np.empty(0, dtype=np.int32)
+            everywhere = np.array([-np.inf, np.inf, -np.inf, np.inf])
+            return sealed(World(nowhere, np.empty((0, 5)), everywhere, self.margin))
+        states = self.problem.plant.state_names
+        circles = np.array(obstacles.circles, dtype=np.float64).reshape(-1, 5)
+        circles[:, 4] += obstacles.radius
+        position = np.array([states.index(name) for name in obstacles.position], dtype=np.int32)
+        return sealed(World(position, circles, np.array(obstacles.bounds, dtype=np.float64), self.margin))
+
+    @cached_property
+    def frame(self) -> Frame:
+        """The closed loop but for the law: what does not change from candidate to candidate."""
+        problem = self.problem
+        parts = (problem.features, problem.plant.saturation, problem.rates, problem.arrival)
+        names = problem.plant.state_names
+        angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
+        return frame(
+            Loop(*map(instructions, parts)), states=len(names), stages=self.clock.b.size, angles=angles
+        )
+
+    @cached_property
+    def clock(self) -> Clock:
+        """The problem's time grid, without an end."""
+        problem, tableau = self.problem, TABLEAUS[self.problem.method]
+        substeps = round(problem.period / problem.step)
+        flags = (problem.hold, problem.stop)
+        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags)
+
+    @cached_property
+    def goals(self) -> Floats:
+        """The goal of each start (S, n)."""
+        return frozen(np.broadcast_to(self.problem.goal, self.problem.starts.shape))
+
+
+def roll(evaluator: Evaluator, program: Program, lanes: Lanes, horizon: float, trace: Floats) -> Floats:
+    """The kernel's result (L, ...) for these lanes, computed in slices of whole blocks by the evaluator's threads."""
+    rows, code = pack(evaluator.frame, instructions(program), len(program.parameters))
+    clock = evaluator.clock._replace(periods=round(horizon / evaluator.problem.period))
+    total, block = len(lanes.picks), evaluator.block
+    states, terminals = lanes.starts.shape[1], len(code.arrival) - 1
+    result = np.empty((total, rollout.TERMINAL + terminals + states))
+
+    def run(first: int, last: int) -> None:
+        rollout.roll(rows, code, lanes, clock, evaluator.world, block, first, last, result, trace)
+
+    slice_size = block * max(1, -(-total // (block * evaluator.threads)))
+    slices = [(first, min(first + slice_size, total)) for first in range(0, total, slice_size)]
+    if len(slices) == 1:
+        run(*slices[0])
+    else:
+        with ThreadPoolExecutor(evaluator.threads) as pool:
+            list(pool.map(lambda ends: run(*ends), slices))
+    return result
+
+
+def instructions(program: Program) -> Instructions:
+    """A program as the kernels take it."""
+    return Instructions(program.code, program.constants, program.outputs)
+
+
+def _rollouts(result: Floats, shape: tuple[int, int], terminals: int) -> Rollouts:
+    table = result.reshape(*shape, -1)
+    first = rollout.TERMINAL
+    return Rollouts(
+        arrival=table[..., rollout.ARRIVAL],
+        end=table[..., rollout.END],
+        cost=table[..., rollout.COST],
+        clearance=table[..., rollout.CLEARANCE],
+        exposure=table[..., rollout.EXPOSURE],
+        depth=table[..., rollout.DEPTH],
+        diverged=table[..., rollout.DIVERGED],
+        terminal=table[..., first : first + terminals],
+        final=table[..., first + terminals :],
+    )

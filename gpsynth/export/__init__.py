@@ -1,0 +1,34 @@
+"""Every form of a law that leaves the package; numba and sympy load with the form that needs them."""
+
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gpsynth.export.c import to_c
+    from gpsynth.export.folder import write
+    from gpsynth.export.formula import to_text
+    from gpsynth.export.latex import to_document, to_latex
+    from gpsynth.export.python_form import to_python
+    from gpsynth.export.sympy_form import SympyForm, to_sympy
+
+__all__ = ["SympyForm", "to_c", "to_document", "to_latex", "to_python", "to_sympy", "to_text", "write"]
+
+_MODULES = MappingProxyType(
+    {
+        "SympyForm": "sympy_form",
+        "to_c": "c",
+        "to_document": "latex",
+        "to_latex": "latex",
+        "to_python": "python_form",
+        "to_sympy": "sympy_form",
+        "to_text": "formula",
+        "write": "folder",
+    }
+)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)

@@ -1,0 +1,280 @@
+"""Problem: from where to where a plant is to be brought, under which clock, what it costs and when it has arrived."""
+
+import functools
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from gpsynth.arrays import Floats, frozen
+from gpsynth.builder import Builder
+from gpsynth.errors import ProblemError
+from gpsynth.plant import TIME, Plant
+from gpsynth.program import Program
+from gpsynth.tracing import Names, input_names, takes_time, trace, wrap_angle
+
+METHODS = ("euler", "heun", "rk4")
+Method = Literal["euler", "heun", "rk4"]
+Function = Callable[..., Any]
+
+_EVERYWHERE = (-np.inf, np.inf, -np.inf, np.inf)
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacles:
+    """Circles, which may move, and the bounds of the workspace; raises ProblemError if they make no sense."""
+
+    # (c, 5) x, y (m) at t = 0, their velocities (m/s) and the radius (m)
+    circles: Floats = field(default_factory=lambda: np.empty((0, 5)))
+    # (4,) x low, x high, y low, y high (m) of the robot's center
+    bounds: Floats = field(default_factory=lambda: np.array(_EVERYWHERE))
+    radius: float = 0.0  # m, of the robot
+    position: tuple[str, str] = ("x", "y")  # states
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "circles", _numbers("circles", self.circles, (-1, 5)))
+        object.__setattr__(self, "bounds", _numbers("bounds", self.bounds, (4,), finite=False))
+        object.__setattr__(self, "radius", float(_numbers("the robot's radius", self.radius, ())))
+        if isinstance(self.position, list):
+            object.__setattr__(self, "position", tuple(self.position))
+        _check_obstacles(self)
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Problem:
+    """What a law is judged by. Functions are traced once and then stand here as Programs.
+
+    Raises ProblemError if the parts do not fit the plant, TracingError if a function cannot become a Program.
+    """
+
+    plant: Plant
+    starts: Floats  # (S, n)
+    goal: Floats  # (n,)
+    tolerance: Floats  # (n,) around the goal, in the units of the states
+    horizon: float  # s
+    period: float  # s, between two evaluations of the law
+    step: float  # s, of the integration
+    method: Method
+    features: Program  # inputs: states, <state>_target; what a law sees
+    reached: Program | None  # inputs: states, <state>_goal; at most 0 on arrival; None: all within tolerance
+    running: Program  # inputs: states, controls, <state>_goal, t; cost per second
+    terminal: Program | None  # inputs: states, <state>_goal; costs at the end
+    hold: bool  # the control is held over a period, else computed at every stage of a step
+    stop: bool  # the rollout ends on arrival
+    obstacles: Obstacles | None
+
+    def __init__(  # noqa: PLR0913 names each choice as a keyword
+        self,
+        plant: Plant,
+        starts: npt.ArrayLike,
+        goal: npt.ArrayLike,
+        *,
+        tolerance: npt.ArrayLike,
+        horizon: float = 30.0,
+        period: float = 0.05,
+        step: float | None = None,
+        method: Method = "rk4",
+        features: Function | Program | None = None,
+        reached: Function | Program | None = None,
+        running: Function | Program | None = None,
+        terminal: Function | Program | None = None,
+        hold: bool = True,
+        stop: bool = True,
+        obstacles: Obstacles | None = None,
+    ) -> None:
+        """`features(x, target)` gives a dictionary of values; by default the error of each state, angles wrapped.
+
+        `reached(x, goal)` gives a measure, by default the largest error in tolerances minus 1; `running(x, u, goal)` or
+        `(x, u, goal, t)` a cost per second, by default 1; `terminal(x, goal)` one or several costs, by default none.
+        """
+        if not isinstance(plant, Plant):
+            raise ProblemError(f"a problem needs a Plant, got {plant!r}")
+        size = len(plant.states)
+        widths = _array("tolerance", tolerance)
+        widths = _numbers("tolerance", np.repeat(widths, size) if widths.ndim == 0 else widths, (size,))
+        to_goal, to_target = _arguments(plant, "goal"), _arguments(plant, "target")
+        at_work = (to_goal[0], ("u", plant.control_names), to_goal[1], (TIME, TIME))
+        values = {
+            "plant": plant,
+            "starts": _numbers("starts", np.atleast_2d(_array("starts", starts)), (-1, size)),
+            "goal": _numbers("goal", goal, (size,)),
+            "tolerance": widths,
+            "horizon": _positive("horizon", horizon),
+            "period": _positive("period", period),
+            "step": _positive("step", period if step is None else step),
+            "method": method,
+            "features": _program("features", features or _errors(plant), to_target),
+            "reached": None if reached is None else _program("reached", reached, to_goal, 1),
+            "running": _program("running", running or _time, at_work, 1),
+            "terminal": None if terminal is None else _program("terminal", terminal, to_goal),
+            "hold": bool(hold),
+            "stop": bool(stop),
+            "obstacles": obstacles,
+        }
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        _check(self)
+
+    @cached_property
+    def rates(self) -> Program:
+        """Derivatives of the states and the running cost; inputs: states, controls, <state>_goal, t."""
+        builder = Builder(self.running.inputs)
+        of = dict(zip(self.running.inputs, builder.inputs, strict=True))
+        derivatives = builder.inline(self.plant.dynamics, [of[name] for name in self.plant.dynamics.inputs])
+        outputs = [*derivatives, *builder.inline(self.running, builder.inputs)]
+        return builder.build(outputs, (*self.plant.state_names, "running"))
+
+    @cached_property
+    def arrival(self) -> Program:
+        """The arrival measure and the terminal costs; inputs: states, <state>_goal."""
+        reached = self.reached or trace(_largest(self.plant, self.tolerance), _arguments(self.plant, "goal"))
+        builder = Builder(reached.inputs)
+        terminal = [] if self.terminal is None else builder.inline(self.terminal, builder.inputs)
+        names = ("measure", *(f"terminal_{index}" for index in range(len(terminal))))
+        return builder.build([*builder.inline(reached, builder.inputs), *terminal], names)
+
+
+def _arguments(plant: Plant, other: str) -> tuple[tuple[str, Names], ...]:
+    """A state and its target or goal, the inputs of which are called <state>_<other>."""
+    return ("x", plant.state_names), (other, {name: f"{name}_{other}" for name in plant.states})
+
+
+def _program(
+    name: str, given: Function | Program, arguments: Sequence[tuple[str, Names]], count: int | None = None
+) -> Program:
+    if isinstance(given, Program):
+        program = given
+    elif not callable(given):
+        raise ProblemError(f"{name} is a function or a Program, got {given!r}")
+    elif arguments[-1][0] == TIME and not takes_time(given, len(arguments) - 1):
+        program = trace(given, arguments[:-1], unread=(TIME,))
+    else:
+        program = trace(given, arguments)
+    inputs = tuple(key for _, group in arguments for key in input_names(group))
+    if program.inputs != inputs or program.parameters:
+        found = program.inputs + program.parameters
+        raise ProblemError(f"{name} takes {', '.join(found)}; expected {', '.join(inputs)}")
+    if count is not None and len(program.outputs) != count:
+        raise ProblemError(f"{name} returns {len(program.outputs)} values; expected {count}")
+    return program
+
+
+def _errors(plant: Plant) -> Function:
+    """The default features: target - x for each state, angles wrapped."""
+
+    def features(x: Any, target: Any) -> dict[str, Any]:
+        errors = {name: getattr(target, name) - getattr(x, name) for name in plant.states}
+        return {
+            f"error_{name}": wrap_angle(error) if name in plant.angles else error
+            for name, error in errors.items()
+        }
+
+    return features
+
+
+def _largest(plant: Plant, tolerance: Floats) -> Function:
+    """The default arrival measure: the largest error in tolerances, minus 1."""
+
+    def reached(x: Any, goal: Any) -> Any:
+        errors = _errors(plant)(x, goal).values()
+        shares = [np.abs(error) / width for error, width in zip(errors, tolerance.tolist(), strict=True)]
+        return functools.reduce(np.maximum, shares) - 1.0
+
+    return reached
+
+
+def _time(x: Any, u: Any, goal: Any) -> float:
+    """The default running cost, whose integral is the time."""
+    return 1.0
+
+
+def _array(name: str, values: npt.ArrayLike) -> Floats:
+    try:
+        return np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ProblemError(f"{name} must hold numbers in rows of equal length, got {values!r}") from None
+
+
+def _numbers(name: str, values: npt.ArrayLike, shape: tuple[int, ...], *, finite: bool = True) -> Floats:
+    """A read-only array of this shape, of which a -1 stands for any length."""
+    array = _array(name, values)
+    if array.size == 0 and shape[0] == -1:
+        array = array.reshape(0, *shape[1:])
+    if array.ndim != len(shape) or any(
+        want not in (-1, has) for want, has in zip(shape, array.shape, strict=True)
+    ):
+        expected = str(shape).replace("-1", "any number")
+        raise ProblemError(f"{name} has shape {array.shape}; expected {expected}")
+    if np.any(np.isnan(array)) or (finite and not np.all(np.isfinite(array))):
+        raise ProblemError(f"{name} holds NaN or infinity: {array.tolist()}")
+    return frozen(array)
+
+
+def _positive(name: str, value: Any) -> float:
+    number = float(_numbers(name, value, ()))
+    if not number > 0.0:
+        raise ProblemError(f"{name} must be positive, got {number}")
+    return number
+
+
+def _check_obstacles(obstacles: Obstacles) -> None:
+    negative = np.flatnonzero(obstacles.circles[:, 4] < 0.0)
+    if negative.size:
+        raise ProblemError(
+            f"circle {negative[0]} has the negative radius {obstacles.circles[negative[0], 4]}"
+        )
+    if not 0.0 <= obstacles.radius < np.inf:
+        raise ProblemError(f"the robot's radius must be finite and at least 0, got {obstacles.radius}")
+    x_low, x_high, y_low, y_high = obstacles.bounds
+    if not (x_low < x_high and y_low < y_high):
+        raise ProblemError(f"bounds are x low, x high, y low, y high, got {obstacles.bounds.tolist()}")
+    if not isinstance(obstacles.position, tuple) or len(set(obstacles.position)) != 2:
+        raise ProblemError(f"position names two different states, got {obstacles.position!r}")
+
+
+def _check(problem: Problem) -> None:
+    if len(problem.starts) == 0:
+        raise ProblemError("starts is empty; expected at least one row")
+    if not isinstance(problem.obstacles, Obstacles | None):
+        raise ProblemError(f"obstacles must be Obstacles or None, got {problem.obstacles!r}")
+    if not np.all(problem.tolerance > 0.0):
+        raise ProblemError(f"tolerance must be positive, got {problem.tolerance.tolist()}")
+    if problem.method not in METHODS:
+        raise ProblemError(f"there is no method {problem.method!r}; expected one of {', '.join(METHODS)}")
+    steps = round(problem.period / problem.step)
+    if steps < 1 or abs(steps * problem.step - problem.period) > 1e-9 * problem.period:
+        raise ProblemError(
+            f"the period, {problem.period} s, must be a multiple of the step, {problem.step} s"
+        )
+    if problem.horizon < problem.period:
+        raise ProblemError(
+            f"the horizon, {problem.horizon} s, is shorter than the period, {problem.period} s"
+        )
+    if problem.obstacles is not None:
+        _check_places(problem, problem.obstacles)
+
+
+def _check_places(problem: Problem, obstacles: Obstacles) -> None:
+    """No start may lie in an obstacle or out of bounds."""
+    names = problem.plant.state_names
+    unknown = [name for name in obstacles.position if name not in names]
+    if unknown:
+        raise ProblemError(
+            f"the position {unknown[0]!r} is no state of the plant; its states are {', '.join(names)}"
+        )
+    places = problem.starts[:, [names.index(name) for name in obstacles.position]]
+    x_low, x_high, y_low, y_high = obstacles.bounds
+    for index, (x, y) in enumerate(places.tolist()):
+        if not (x_low <= x <= x_high and y_low <= y <= y_high):
+            raise ProblemError(
+                f"start {index} at ({x}, {y}) is outside the bounds {obstacles.bounds.tolist()}"
+            )
+        for circle, (cx, cy, _, _, radius) in enumerate(obstacles.circles.tolist()):
+            if np.hypot(x - cx, y - cy) < radius + obstacles.radius:
+                raise ProblemError(
+                    f"start {index} at ({x}, {y}) is inside obstacle {circle}, the circle of radius {radius} "
+                    f"around ({cx}, {cy}) grown by the robot's {obstacles.radius}"
+                )

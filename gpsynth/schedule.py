@@ -1,0 +1,47 @@
+"""Schedule: the equilibrium points a plant is led through, and how long each is the target."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from gpsynth.arrays import Floats, frozen
+from gpsynth.errors import ProblemError
+
+
+@dataclass(frozen=True, eq=False)
+class Schedule:
+    """Point j is the target for dwell[j] seconds; after the last one the target is the goal.
+
+    Raises ProblemError if shapes do not agree, a number is not finite or a dwell time is negative.
+    """
+
+    points: Floats  # (k, n) in the units of the states
+    dwell: Floats  # (k,) s
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", _numbers("points", self.points))
+        object.__setattr__(self, "dwell", _numbers("dwell times", self.dwell))
+        if self.points.ndim != 2 or self.dwell.shape != (len(self.points),):
+            raise ProblemError(
+                f"points and dwell of a schedule have shapes {self.points.shape} and {self.dwell.shape}; "
+                "expected (k, n) and (k,)"
+            )
+        if not np.all(np.isfinite(self.points)):
+            raise ProblemError("the points of a schedule hold NaN or infinity; expected finite numbers")
+        if not np.all(np.isfinite(self.dwell) & (self.dwell >= 0.0)):
+            raise ProblemError(f"the dwell times must be finite and at least 0 s, got {self.dwell.tolist()}")
+
+    @property
+    def ends(self) -> Floats:
+        """When each point stops being the target, (k,) s."""
+        return np.cumsum(self.dwell)
+
+
+def _numbers(what: str, values: npt.ArrayLike) -> Floats:
+    try:
+        return frozen(np.asarray(values, dtype=np.float64))
+    except (TypeError, ValueError):
+        raise ProblemError(
+            f"the {what} of a schedule must be numbers in rows of equal length, got {values!r}"
+        ) from None

@@ -1,0 +1,72 @@
+"""One trajectory, for people: the same kernel as `evaluate`, with everything it passes through kept."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gpsynth.arrays import Floats
+from gpsynth.errors import ProblemError
+from gpsynth.evaluate import Evaluator, roll
+from gpsynth.kernels import rollout
+from gpsynth.kernels.layout import Lanes, sealed
+from gpsynth.law import Law
+from gpsynth.problem import Problem
+from gpsynth.schedule import Schedule
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A closed loop in time, N control periods long."""
+
+    t: Floats  # (N + 1,) s
+    x: Floats  # (N + 1, n)
+    u: Floats  # (N, m) held over each period
+    target: Floats  # (N + 1, n)
+    arrival: float  # s, infinity if the goal is not reached
+    cost: float  # running cost, infinity if the rollout diverged
+    clearance: float  # m, smallest along the path, robot radius deducted; infinity without obstacles
+
+
+def simulate(
+    problem: Problem,
+    law: Law,
+    start: Floats | None = None,
+    *,
+    schedule: Schedule | None = None,
+    horizon: float | None = None,
+) -> Trajectory:
+    """The closed loop of `law` from `start` (n,), by default the problem's first, until arrival or the horizon (s).
+
+    The target is the problem's goal, or the points of `schedule` and then the goal. Raises ProblemError if the start
+    does not fit.
+    """
+    states = len(problem.plant.state_names)
+    origin = problem.starts[0] if start is None else np.asarray(start, dtype=np.float64)
+    if origin.shape != (states,):
+        raise ProblemError(f"the start has shape {origin.shape}; expected ({states},)")
+    horizon = problem.horizon if horizon is None else horizon
+    points = np.empty((0, states)) if schedule is None else schedule.points
+    ends = np.empty(0) if schedule is None else np.cumsum(schedule.dwell)
+    lanes = Lanes(
+        picks=np.zeros((1, 3), dtype=np.int32),
+        starts=origin[np.newaxis],
+        goals=np.broadcast_to(problem.goal, (1, states)).copy(),
+        parameters=np.array(law.parameters, dtype=np.float64)[np.newaxis],
+        points=np.array(points, dtype=np.float64)[np.newaxis],
+        ends=np.array(ends, dtype=np.float64)[np.newaxis],
+    )
+    controls = len(problem.plant.control_names)
+    periods = round(horizon / problem.period)
+    trace = np.empty((1, periods + 1, 2 * states + controls))
+    result = roll(Evaluator(problem, block=1), law.program, sealed(lanes), horizon, trace)[0]
+    ticks = round(result[rollout.END] / problem.period) + 1
+    path = trace[0, :ticks]
+    return Trajectory(
+        t=np.arange(ticks) * problem.period,
+        x=path[:, :states],
+        u=path[:-1, states : states + controls],
+        target=path[:, states + controls :],
+        arrival=float(result[rollout.ARRIVAL]),
+        cost=float(result[rollout.COST]),
+        clearance=float(result[rollout.CLEARANCE]),
+    )

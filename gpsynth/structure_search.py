@@ -1,0 +1,276 @@
+"""Structure and numbers searched together: variation changes formulas, CMA-ES tunes the numbers of the best ones.
+
+A generation holds new formulas, each under a few parameter vectors, and the next samples of a CMA-ES that belongs to
+each of the best formulas found so far. Both compete by the same costs in the same batch, so the budget goes where
+improvement is: a formula stays tuned only while it stays among the best.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from gpsynth.arrays import Floats
+from gpsynth.encodings.protocol import Encoding
+from gpsynth.errors import OptimizerError
+from gpsynth.optimizers import CMAES, CMAESState
+from gpsynth.program import Program
+
+G = TypeVar("G")
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate(Generic[G]):
+    """A formula under one parameter vector; candidates that share a program stand side by side in a batch."""
+
+    genome: G
+    program: Program
+    values: Floats  # (p,)
+
+
+@dataclass(frozen=True, eq=False)
+class Individual(Generic[G]):
+    """A formula with the best numbers known for it."""
+
+    genome: G
+    program: Program
+    values: Floats  # (p,)
+    cases: Floats  # (S,) cost from each start
+    born: int  # generation in which its oldest ancestor was drawn at random
+    tuner: CMAESState | None = None
+    idle: int = 0  # generations of tuning without improvement
+
+    @cached_property
+    def cost(self) -> float:
+        """Mean cost over the starts."""
+        return float(self.cases.mean())
+
+    @property
+    def complexity(self) -> int:
+        """Instructions of the program."""
+        return self.program.complexity
+
+
+@dataclass(frozen=True, eq=False)
+class SearchState(Generic[G]):
+    """Population by rising cost, Pareto front over (cost, complexity), and what the waiting batch is made of."""
+
+    population: tuple[Individual[G], ...]
+    front: tuple[Individual[G], ...]
+    tuned: tuple[tuple[Individual[G], CMAESState, int], ...] = ()  # individual, waiting tuner, number of samples
+    groups: tuple[tuple[int, int], ...] = ()  # of each new formula: number of vectors, generation of its ancestor
+    generation: int = 0
+
+
+@dataclass(frozen=True)
+class StructureSearch(Generic[G]):
+    """An evolutionary search over the formulas of an encoding; satisfies `optimizers.protocol.Search`.
+
+    Costs are (batch, S), one for each start; complexity is known without evaluation. Raises OptimizerError for
+    settings below 1.
+    """
+
+    encoding: Encoding[G]
+    population: int = 200
+    offspring: int = 200  # new formulas in a generation
+    vectors: int = 1  # parameter vectors a new formula is tried with
+    tuned: int = 4  # formulas under CMA-ES
+    tournament: int = 4
+    simple: float = 0.1  # probability that a parent is one of the front
+    lexicase: float = 0.4  # probability that a parent is chosen by epsilon-lexicase
+    crossover: float = 0.5  # probability that an offspring has two parents
+    fresh: float = 0.1  # probability that an offspring is random
+    patience: int = 12  # generations of tuning without improvement before another formula gets the place
+    seeds: tuple[G, ...] = ()  # formulas to begin with
+
+    def __post_init__(self) -> None:
+        for name in ("population", "offspring", "vectors", "tournament", "patience"):
+            if getattr(self, name) < 1:
+                raise OptimizerError(f"{name} must be at least 1, not {getattr(self, name)}")
+
+    def init(self, rng: np.random.Generator) -> SearchState[G]:
+        """Nothing is known yet."""
+        return SearchState((), ())
+
+    def ask(
+        self, state: SearchState[G], rng: np.random.Generator
+    ) -> tuple[tuple[Candidate[G], ...], SearchState[G]]:
+        """New formulas under `vectors` parameter vectors each, and the samples of the tuners."""
+        batch: list[Candidate[G]] = []
+        groups, tuned = [], []
+        for genome, program, born in self._new(state, rng):
+            vectors = self._vectors(genome, program, rng)
+            batch += [Candidate(genome, program, values) for values in vectors]
+            groups.append((len(vectors), born))
+        for individual in self._to_tune(state):
+            tuner = self._tuner(individual)
+            begun = tuner.init(rng) if individual.tuner is None else individual.tuner
+            samples, waiting = tuner.ask(begun, rng)
+            batch += [Candidate(individual.genome, individual.program, values) for values in samples]
+            tuned.append((individual, waiting, len(samples)))
+        return tuple(batch), replace(state, groups=tuple(groups), tuned=tuple(tuned))
+
+    def tell(
+        self, state: SearchState[G], candidates: Sequence[Candidate[G]], costs: Floats
+    ) -> SearchState[G]:
+        """The best of old and new formulas, no two with the same cost; numbers of tuned ones improved."""
+        known = {individual.program: individual for individual in state.population}
+        means = np.where(np.isfinite(costs).all(axis=1), costs.mean(axis=1), inf)
+        first = 0
+        for count, born in state.groups:
+            best = first + int(np.argmin(means[first : first + count]))
+            if np.isfinite(means[best]):
+                chosen = candidates[best]
+                known[chosen.program] = Individual(chosen.genome, chosen.program, chosen.values, costs[best], born)
+            first += count
+        for individual, waiting, count in state.tuned:
+            asked = slice(first, first + count)
+            improved = self._tuned(individual, waiting, candidates[asked], means[asked], costs[asked])
+            known[individual.program] = improved
+            first += count
+        ordered = sorted(known.values(), key=lambda individual: (individual.cost, individual.complexity))
+        distinct = _distinct(ordered)
+        survivors = _survivors(distinct, self.population)
+        return SearchState(survivors, _front((*state.front, *distinct)), generation=state.generation + 1)
+
+    def best(self, state: SearchState[G]) -> tuple[Individual[G] | None, float]:
+        """The formula of least cost."""
+        return (state.population[0], state.population[0].cost) if state.population else (None, inf)
+
+    def stop(self, state: SearchState[G]) -> str:
+        """Formulas never run out."""
+        return ""
+
+    def _new(self, state: SearchState[G], rng: np.random.Generator) -> list[tuple[G, Program, int]]:
+        """Offspring whose programs are not in the population."""
+        wanted = self.offspring if state.population else self.population
+        known = {individual.program for individual in state.population}
+        found: list[tuple[G, Program, int]] = []
+        waiting = list(self.seeds) if not state.population else []
+        for _ in range(4 * wanted):
+            genome, born = (waiting.pop(), state.generation) if waiting else self._child(state, rng)
+            program = self.encoding.decode(genome)
+            if program not in known:
+                known.add(program)
+                found.append((genome, program, born))
+            if len(found) == wanted:
+                break
+        return found
+
+    def _child(self, state: SearchState[G], rng: np.random.Generator) -> tuple[G, int]:
+        """A genome and the generation of its oldest ancestor."""
+        if not state.population or rng.random() < self.fresh:
+            return self.encoding.random(rng), state.generation
+        parent = self._parent(state, rng)
+        genome = self.encoding.with_parameters(parent.genome, parent.values)
+        if rng.random() < self.crossover:
+            other = self._parent(state, rng)
+            theirs = self.encoding.with_parameters(other.genome, other.values)
+            children = self.encoding.crossover(genome, theirs, rng)
+            return children[int(rng.integers(2))], min(parent.born, other.born)
+        for _ in range(int(rng.integers(1, 4))):
+            genome = self.encoding.mutate(genome, rng)
+        return genome, parent.born
+
+    def _parent(self, state: SearchState[G], rng: np.random.Generator) -> Individual[G]:
+        """One of the front, since small formulas are good material, a winner of a tournament, or a specialist."""
+        draw = rng.random()
+        if draw < self.simple:
+            return state.front[int(rng.integers(len(state.front)))]
+        if draw < self.simple + self.lexicase:
+            return _specialist(state.population, rng)
+        return state.population[int(rng.integers(len(state.population), size=self.tournament).min())]
+
+    def _vectors(self, genome: G, program: Program, rng: np.random.Generator) -> list[Floats]:
+        values = self.encoding.parameters(genome)
+        if not _uses_parameters(program):
+            return [values]
+        space = self.encoding.space
+        factors = np.exp(rng.normal(0.0, 0.7, (self.vectors - 1, len(values))))
+        flips = np.where(rng.random(factors.shape) < 0.1, -1.0, 1.0)
+        moved = np.clip(values * factors * flips, space.lower, space.upper)
+        return [values, *moved]
+
+    def _to_tune(self, state: SearchState[G]) -> list[Individual[G]]:
+        """The best formulas with numbers that still improve, small ones of the front among them."""
+        ranked = (*state.population[: 2 * self.tuned], *state.front)
+        unique = {individual.program: individual for individual in ranked if _uses_parameters(individual.program)}
+        lively = [individual for individual in unique.values() if individual.idle < self.patience]
+        return lively[: self.tuned]
+
+    def _tuner(self, individual: Individual[G]) -> CMAES:
+        space, size = self.encoding.space, len(individual.values)
+        lower, upper = np.full(size, space.lower), np.full(size, space.upper)
+        return CMAES(lower, upper, x0=individual.values, sigma=0.05, restarts=0)
+
+    def _tuned(
+        self,
+        individual: Individual[G],
+        waiting: CMAESState,
+        asked: Sequence[Candidate[G]],
+        means: Floats,
+        costs: Floats,
+    ) -> Individual[G]:
+        tuner = self._tuner(individual)
+        learned = tuner.tell(waiting, np.array([candidate.values for candidate in asked]), means)
+        best = int(np.argmin(means))
+        if not means[best] < individual.cost:
+            ended = self.patience if tuner.stop(learned) else individual.idle + 1
+            return replace(individual, tuner=learned, idle=ended)
+        return replace(individual, tuner=learned, idle=0, values=asked[best].values, cases=costs[best])
+
+
+def _uses_parameters(program: Program) -> bool:
+    first = len(program.inputs)
+    return bool(np.any((program.code[:, 1:] >= first) & (program.code[:, 1:] < first + len(program.parameters))))
+
+
+def _specialist(population: Sequence[Individual[G]], rng: np.random.Generator) -> Individual[G]:
+    """Epsilon-lexicase selection (La Cava et al. 2016): starts in random order, those near the best of each survive."""
+    cases = np.array([individual.cases for individual in population])
+    left = np.arange(len(population))
+    for case in rng.permutation(cases.shape[1]):
+        column = cases[left, case]
+        spread = np.median(np.abs(column - np.median(column)))
+        left = left[column <= column.min() + spread]
+        if len(left) == 1:
+            break
+    return population[int(left[int(rng.integers(len(left)))])]
+
+
+def _survivors(ordered: Sequence[Individual[G]], count: int) -> tuple[Individual[G], ...]:
+    """By age and cost (Schmidt & Lipson 2011): an old formula must be better than every younger one to stay.
+
+    So new starts are not crowded out before they have had time to improve.
+    """
+    left = list(ordered)
+    kept: list[Individual[G]] = []
+    while left and len(kept) < count:
+        youngest, front, rest = -1, [], []
+        for individual in left:
+            (front if individual.born > youngest else rest).append(individual)
+            youngest = max(youngest, individual.born)
+        kept += front
+        left = rest
+    return tuple(sorted(kept[:count], key=lambda individual: (individual.cost, individual.complexity)))
+
+
+def _distinct(ordered: Sequence[Individual[G]]) -> list[Individual[G]]:
+    """Without individuals that cost the same as a simpler one: equal behavior written differently."""
+    kept: list[Individual[G]] = []
+    for individual in ordered:
+        if not kept or individual.cost > kept[-1].cost:
+            kept.append(individual)
+    return kept
+
+
+def _front(individuals: Sequence[Individual[G]]) -> tuple[Individual[G], ...]:
+    """Those that no simpler or equally simple one undercuts, by rising complexity."""
+    front: list[Individual[G]] = []
+    for individual in sorted(individuals, key=lambda each: (each.complexity, each.cost)):
+        if not front or individual.cost < front[-1].cost:
+            front.append(individual)
+    return tuple(front)

@@ -1,0 +1,167 @@
+"""Stage 1: synthesize a stabilizer u = g(x, x*), structure and numbers together, as a front of cost and complexity."""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any, TypeVar
+
+import numpy as np
+
+from gpsynth.arrays import Floats
+from gpsynth.encodings.protocol import Encoding
+from gpsynth.errors import ProblemError
+from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.law import Law
+from gpsynth.optimizers import CMAES, Progress, minimize
+from gpsynth.problem import Problem
+from gpsynth.program import Program
+from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch
+
+G = TypeVar("G")
+
+SEARCH, TUNING = 1, 2  # stages of the random streams
+
+
+@dataclass(frozen=True, eq=False)
+class FrontEntry:
+    """One law of the front and how it fares on the whole problem."""
+
+    law: Law
+    cost: float  # mean over the starts of running and terminal cost
+    complexity: int  # instructions of the formula
+    reached: float  # share of the starts from which the goal is reached
+    median_time: float  # s, of the arrivals
+
+
+@dataclass(frozen=True, eq=False)
+class SynthesisResult:
+    """The Pareto front by rising complexity, each law better than all simpler ones."""
+
+    front: tuple[FrontEntry, ...]
+    evaluations: int  # parameter vectors rolled out from all starts
+    history: tuple[tuple[int, float], ...]  # (evaluations, best cost) of the search
+    reason: str
+
+    @property
+    def best(self) -> FrontEntry:
+        """The entry of least cost."""
+        return self.front[-1]
+
+    @property
+    def law(self) -> Law:
+        """The law of least cost."""
+        return self.best.law
+
+    def table(self) -> str:
+        """The front as text: complexity, cost, share of starts reached, median time, formulas."""
+        lines = [f"{'size':>4} {'cost':>10} {'reached':>8} {'median s':>9}  law"]
+        for entry in self.front:
+            head = f"{entry.complexity:4d} {entry.cost:10.4g} {entry.reached:8.1%} {entry.median_time:9.2f}  "
+            lines.append(head + ("\n" + " " * 36).join(entry.law.formulas()))
+        return "\n".join(lines)
+
+
+def synthesize(
+    problem: Problem,
+    encoding: Encoding[G],
+    *,
+    seed: int = 0,
+    budget: int = 20_000,
+    tuning: int = 2_000,
+    search: StructureSearch[G] | None = None,
+    rough: Problem | None = None,
+    threads: int = 2,
+    progress: bool = False,
+    callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
+) -> SynthesisResult:
+    """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
+
+    An evaluation is one parameter vector of one formula rolled out from all starts. The search may use a `rough`
+    problem (fewer starts, longer steps); every law of the front is tuned with at most `tuning` evaluations, and
+    scored, on `problem` itself. The same seed gives the same result for any number of threads. Raises ProblemError
+    if the encoding's inputs and outputs are not the problem's features and controls.
+    """
+    features, controls = problem.features.names, tuple(problem.plant.control_names)
+    if encoding.inputs != features or encoding.outputs != controls:
+        raise ProblemError(
+            f"the encoding maps {encoding.inputs} to {encoding.outputs}; the problem has features {features} "
+            f"and controls {controls}"
+        )
+    cost = batch_cost(Evaluator(rough or problem), threads)
+    strategy = search or StructureSearch(encoding)
+    found = minimize(
+        cost, strategy, seed=seed, budget=budget, path=(SEARCH,), progress=progress, callback=callback
+    )
+    evaluator = Evaluator(problem)
+    spaces = [
+        (individual, number) for number, individual in enumerate(found.state.front) if np.isfinite(individual.cost)
+    ]
+    with ThreadPoolExecutor(threads) as pool:
+        tuned = list(pool.map(lambda item: _tuned(evaluator, encoding, *item, seed=seed, budget=tuning), spaces))
+    entries = [_entry(evaluator, program, values) for program, values in tuned]
+    return SynthesisResult(_front(entries), found.evaluations, found.history, found.reason)
+
+
+def costs_of(rollouts: Rollouts) -> Floats:
+    """Running cost and terminal costs from each start, (N, S); +inf where a rollout diverged."""
+    total: Floats = rollouts.cost + rollouts.terminal.sum(axis=-1)
+    return np.where(np.isfinite(total), total, np.inf)
+
+
+def batch_cost(evaluator: Evaluator, threads: int) -> Callable[[Sequence[Candidate[Any]]], Floats]:
+    """The cost function of a structure search: candidates with one program go to the kernel together."""
+
+    def cost(batch: Sequence[Candidate[Any]]) -> Floats:
+        groups = [list(group) for _, group in groupby(batch, key=lambda candidate: id(candidate.program))]
+
+        def of_group(group: list[Candidate[Any]]) -> Floats:
+            values = np.array([candidate.values for candidate in group]).reshape(len(group), -1)
+            return costs_of(evaluator.of_program(group[0].program, values))
+
+        with ThreadPoolExecutor(threads) as pool:
+            return np.concatenate(list(pool.map(of_group, groups)))
+
+    return cost
+
+
+def _tuned(
+    evaluator: Evaluator, encoding: Encoding[G], individual: Individual[G], number: int, *, seed: int, budget: int
+) -> tuple[Program, Floats]:
+    """The formula of a front member with its numbers tuned on the evaluator's problem."""
+    program, values = individual.program, individual.values
+    if len(values) == 0 or budget < 1:
+        return program, values
+    space = encoding.space
+    lower, upper = np.full(len(values), space.lower), np.full(len(values), space.upper)
+    optimizer = CMAES(lower, upper, x0=values, sigma=0.02, restarts=0)
+
+    def cost(vectors: Floats) -> Floats:
+        means: Floats = costs_of(evaluator.of_program(program, vectors)).mean(axis=1)
+        return means
+
+    found = minimize(cost, optimizer, seed=seed, budget=budget, path=(TUNING, number))
+    before = float(cost(values[np.newaxis])[0])
+    return (program, found.x) if found.cost < before else (program, values)
+
+
+def _entry(evaluator: Evaluator, program: Program, values: Floats) -> FrontEntry:
+    problem = evaluator.problem
+    rollouts = evaluator.of_program(program, values[np.newaxis])
+    arrival = rollouts.arrival[0]
+    reached = np.isfinite(arrival)
+    return FrontEntry(
+        law=Law(problem.plant, problem.features, program, values),
+        cost=float(costs_of(rollouts)[0].mean()),
+        complexity=program.complexity,
+        reached=float(reached.mean()),
+        median_time=float(np.median(arrival[reached])) if reached.any() else float("inf"),
+    )
+
+
+def _front(entries: Sequence[FrontEntry]) -> tuple[FrontEntry, ...]:
+    front: list[FrontEntry] = []
+    for entry in sorted(entries, key=lambda each: (each.complexity, each.cost)):
+        if np.isfinite(entry.cost) and (not front or entry.cost < front[-1].cost):
+            front.append(entry)
+    return tuple(front)

@@ -1,0 +1,82 @@
+"""The lane machine against the scalar functions: its numbers are the table's, and lanes never see each other."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from gpsynth.arrays import Floats
+from gpsynth.builder import Builder
+from gpsynth.kernels import elementary, machine
+from gpsynth.operations import OPERATIONS, Operation
+from gpsynth.program import Program
+
+SPECIAL = (
+    *(0.0, -0.0, 1.0, -1.0, 0.5, -0.01, 3.0, np.pi, -np.pi, 1e-8, -1e-9, 2.5e-308, 5e-324, 18.5, -465.0, 1e4),
+    *(-1.5e8, 1e300, np.inf, -np.inf, np.nan),
+)
+
+
+def _same_bits(a: Floats, b: Floats) -> bool:
+    """Equal in every bit; a NaN has no sign and no payload that anybody should read."""
+    known = ~(np.isnan(a) & np.isnan(b))
+    return np.array_equal(a.view(np.int64)[known], b.view(np.int64)[known])
+
+
+def _operands(arity: int, rng: np.random.Generator) -> Floats:
+    """Rows of special values in every combination, then of random ones over many magnitudes."""
+    few = SPECIAL if arity < 3 else (*SPECIAL[::3], np.nan)
+    special = np.array(list(itertools.product(few, repeat=arity)))
+    ordinary = rng.normal(size=(150, arity)) * 10.0 ** rng.uniform(-9, 9, (150, arity))
+    return np.concatenate((special, ordinary, rng.uniform(-3, 3, (150, arity))))
+
+
+def _program(rng: np.random.Generator, instructions: int = 40) -> Program:
+    """A random program over all operations that are total, with two parameters."""
+    builder = Builder(("a", "b", "c"), ("p", "q"))
+    values = [*builder.inputs, *builder.parameters, builder.constant(0.3)]
+    for _ in range(instructions):
+        row = OPERATIONS[rng.integers(len(OPERATIONS))]
+        values.append(builder.apply(row.name, *(int(v) for v in rng.choice(values, row.arity))))
+    return builder.build(values[-6:])
+
+
+@pytest.mark.parametrize("row", OPERATIONS, ids=[row.name for row in OPERATIONS])
+def test_every_operation_is_its_scalar_function_bit_for_bit(row: Operation) -> None:
+    operands = _operands(row.arity, np.random.default_rng(3))
+    code = np.array(
+        [[OPERATIONS.index(row), 0, *range(1, row.arity), *[0] * (3 - row.arity)]], dtype=np.int32
+    )
+    outputs = np.array([row.arity], dtype=np.int32)
+    found = machine.evaluate(code, np.empty(0), outputs, operands, np.empty((1, 0)))[:, 0]
+    expected = np.array([elementary.evaluate(row.name, *values) for values in operands.tolist()])
+    assert _same_bits(np.ascontiguousarray(found), expected)
+
+
+def test_any_number_of_lanes_gives_the_same_bits() -> None:
+    rng = np.random.default_rng(5)
+    program = _program(rng)
+    inputs, parameters = rng.normal(size=(130, 3)), rng.normal(size=(130, 2))
+    whole = program(inputs, parameters)
+    for lanes in range(131):
+        assert _same_bits(program(inputs[:lanes], parameters[:lanes]), whole[:lanes])
+
+
+def test_one_parameter_vector_serves_all_rows() -> None:
+    rng = np.random.default_rng(6)
+    program = _program(rng)
+    inputs, parameters = rng.normal(size=(70, 3)), rng.normal(size=2)
+    assert _same_bits(program(inputs, parameters), program(inputs, np.tile(parameters, (70, 1))))
+
+
+def test_each_row_takes_its_own_parameters() -> None:
+    builder = Builder(("x",), ("p",))
+    program = builder.build([builder.apply("mul", builder.inputs[0], builder.parameters[0])])
+    inputs, parameters = np.arange(100.0)[:, None], np.arange(100.0, 200.0)[:, None]
+    assert np.array_equal(program(inputs, parameters), inputs * parameters)
+
+
+def test_an_output_may_be_an_input_a_parameter_or_a_constant() -> None:
+    builder = Builder(("x",), ("p",))
+    program = builder.build([builder.inputs[0], builder.parameters[0], builder.constant(2.5)])
+    assert program(np.array([[1.0], [2.0]]), [7.0]).tolist() == [[1.0, 7.0, 2.5], [2.0, 7.0, 2.5]]

@@ -1,0 +1,162 @@
+"""Stage 2 for any plant: the cost, its rounds, and what a plan promises."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gpsynth.errors import ProblemError
+from gpsynth.evaluate import Evaluator
+from gpsynth.law import Law
+from gpsynth.planning import Objective, PlanSettings, plan
+from gpsynth.plant import Plant
+from gpsynth.problem import Obstacles, Problem
+from gpsynth.schedule import Schedule
+from gpsynth.simulate import simulate
+from gpsynth.tracing import trace
+
+SMALL = PlanSettings(points=2, particles=32, iterations=10, rounds=6)
+
+
+def point_robot() -> tuple[Problem, Law]:
+    """A point with bounded velocity, drawn to its target; a disc stands in the straight way to the goal."""
+    plant = Plant(
+        lambda x, u: (u.a, u.b),
+        states={"x": "m", "y": "m"},
+        controls={"a": ("m/s", -1.0, 1.0), "b": ("m/s", -1.0, 1.0)},
+        name="point",
+    )
+    obstacles = Obstacles(circles=np.array([[2.0, 0.0, 0.0, 0.0, 0.5]]), radius=0.1)
+    problem = Problem(
+        plant, [0.0, 0.0], [4.0, 0.0], tolerance=[0.05, 0.05], horizon=12.0, period=0.05, obstacles=obstacles
+    )
+    names = problem.features.names
+    program = trace(lambda seen: (4.0 * seen[0], 4.0 * seen[1]), [("seen", names)], ("a", "b"))
+    return problem, Law(plant, problem.features, program, np.empty(0))
+
+
+@pytest.fixture(name="setting")
+def _setting() -> tuple[Problem, Law]:
+    return point_robot()
+
+
+def objective(setting: tuple[Problem, Law], settings: PlanSettings, budget: float) -> Objective:
+    return Objective(Evaluator(setting[0], margin=settings.margin), setting[1], settings, budget)
+
+
+def test_a_plan_reaches_the_goal_around_the_obstacle(setting):
+    found = plan(*setting, SMALL, seed=1)
+    assert found.is_free
+    assert found.clearance >= SMALL.margin
+    # the shortest way around a disc of 0.6 m at 1 m/s along each axis cannot beat the straight 3.95 m along x
+    assert 3.95 <= found.arrival_time < 4.3
+    assert found.trajectory.t[-1] - setting[0].period <= found.arrival_time <= found.trajectory.t[-1]
+
+
+def test_the_plan_is_what_its_schedule_does(setting):
+    found = plan(*setting, SMALL, seed=1)
+    again = simulate(*setting, schedule=found.schedule)
+    assert np.array_equal(again.u, found.trajectory.u)
+    assert again.clearance == found.clearance
+
+
+def test_the_same_seed_gives_the_same_plan_for_any_number_of_threads(setting):
+    one = plan(*setting, replace(SMALL, particles=200, rounds=2), seed=3)
+    two = plan(*setting, replace(SMALL, particles=200, rounds=2), seed=3, threads=2)
+    assert np.array_equal(one.schedule.points, two.schedule.points)
+    assert one.history == two.history
+
+
+def test_the_time_budget_only_tightens_and_ends_at_the_plan(setting):
+    found = plan(*setting, SMALL, seed=2)
+    times = [budget for _, budget in found.history]
+    assert times[0] == setting[0].horizon
+    assert all(later <= earlier for earlier, later in zip(times, times[1:], strict=False))
+    assert times[-1] == found.arrival_time
+
+
+def test_a_plan_once_found_is_never_lost(setting):
+    seen = []
+    plan(*setting, replace(SMALL, rounds=8), seed=5, callback=lambda each: seen.append(each.arrival_time))
+    assert len(seen) == 7  # the last round has no further one to stop
+    assert all(later <= earlier for earlier, later in zip(seen, seen[1:], strict=False))
+
+
+def test_the_callback_stops_the_search(setting):
+    found = plan(*setting, SMALL, seed=1, callback=lambda each: True)
+    assert len(found.history) == 2
+
+
+def test_an_initial_schedule_is_not_made_worse(setting):
+    good = plan(*setting, SMALL, seed=1)
+    again = plan(*setting, replace(SMALL, rounds=1, iterations=1), seed=9, initial=[good.schedule])
+    assert again.arrival_time <= good.arrival_time
+
+
+def test_cma_es_refines_as_well(setting):
+    good = plan(*setting, replace(SMALL, rounds=1), seed=1)
+    refiner = replace(SMALL, optimizer="cmaes", particles=12, iterations=20, rounds=2)
+    refined = plan(*setting, refiner, seed=1, initial=[good.schedule])
+    assert refined.is_free
+    assert refined.arrival_time <= good.arrival_time
+
+
+def test_the_paper_cost_is_equation_17(setting):
+    settings = PlanSettings.paper(2)
+    cost = objective(setting, settings, budget=6.0)
+    inside, outside = [2.0, 0.1], [2.0, 1.0]
+    vectors = np.array([[*inside, *outside], [*outside, *outside]])
+    points, dwell = cost.schedules(vectors)
+    assert np.array_equal(dwell, np.full((2, 2), 2.0))  # T+ / 3, the goal being the third point
+    rollouts = cost.rollouts(points, dwell)
+    used = np.where(np.isinf(rollouts.arrival), rollouts.end, cost.arrivals(rollouts, points, dwell)[:, None])[:, 0]
+    error = np.linalg.norm(rollouts.final[:, 0] - [4.0, 0.0], axis=1)
+    expected = 10.0 * error + 0.25 * (np.maximum(0.0, used - 6.0) + used / 6.0) + 5.0 * np.array([1.0, 0.0])
+    assert np.allclose(cost(vectors), expected, rtol=1e-15, atol=0.0)
+
+
+def test_the_path_counts_where_points_are_clear(setting):
+    straight = np.array([[1.0, 0.0, 3.0, 0.0, 1.0, 2.0]])
+    detour = np.array([[2.0, 0.9, 3.0, 0.7, 1.5, 1.0]])
+    on_path = objective(setting, SMALL, budget=6.0)
+    on_points = objective(setting, replace(SMALL, obstacles="points"), budget=6.0)
+    assert on_path(straight) > on_path(detour) + SMALL.gamma
+    assert on_points(straight) < 1.0 < SMALL.gamma  # arrived straight through the disc, and no point lies in it
+
+
+def test_arrival_is_found_between_the_control_periods(setting):
+    problem, law = setting
+    settings = replace(SMALL, points=1)
+    vector = np.array([[1.0, 3.0, 1.6]])
+    coarse = objective((problem, law), settings, budget=12.0)
+    points, dwell = coarse.schedules(vector)
+    fine_problem = Problem(
+        problem.plant, problem.starts, problem.goal, tolerance=problem.tolerance, horizon=12.0, period=0.05, step=0.05
+    )
+    fine = simulate(fine_problem, law, schedule=Schedule(points[0], dwell[0]))
+    time = coarse.arrivals(coarse.rollouts(points, dwell), points, dwell)[0]
+    # the last period is replayed by hand: the state is linear in time while the control is held
+    share = np.linspace(0.0, 1.0, 100_001)[:, None]
+    last = fine.x[-2] + share * (fine.x[-1] - fine.x[-2])
+    inside = np.max(np.abs(last - problem.goal) / problem.tolerance, axis=1) <= 1.0
+    exact = fine.t[-2] + 0.05 * share[np.argmax(inside), 0]
+    assert abs(time - exact) < 0.01  # the control at the end of the period stands for the one within
+
+
+def test_cost_does_not_depend_on_what_else_is_evaluated(setting):
+    cost = objective(setting, SMALL, budget=6.0)
+    vectors = np.random.default_rng(4).uniform(0.1, 3.0, (70, 6))
+    together = cost(vectors)
+    assert np.array_equal(together[17:18], cost(vectors[17:18]))
+
+
+def test_what_does_not_fit_is_said(setting):
+    problem, law = setting
+    with pytest.raises(ProblemError, match=r"an initial schedule has points of shape \(1, 2\); expected \(2, 2\)"):
+        plan(problem, law, SMALL, initial=[Schedule(np.zeros((1, 2)), np.ones(1))])
+    with pytest.raises(ProblemError, match="a plan begins at one start; the problem has 2"):
+        plan(Problem(problem.plant, np.zeros((2, 2)), [4.0, 0.0], tolerance=[0.1, 0.1]), law, SMALL)
+    with pytest.raises(ProblemError, match="rounds of a plan is 0"):
+        PlanSettings(rounds=0)
+    with pytest.raises(ProblemError, match="dwell is"):
+        PlanSettings(dwell=(2.0, 1.0))

@@ -1,0 +1,77 @@
+"""One trajectory: the evaluator's rollout with everything on its way."""
+
+import numpy as np
+import pytest
+
+from gpsynth.errors import ProblemError
+from gpsynth.evaluate import Evaluator
+from gpsynth.law import Law
+from gpsynth.plant import Plant
+from gpsynth.problem import Obstacles, Problem
+from gpsynth.schedule import Schedule
+from gpsynth.simulate import simulate
+from gpsynth.tracing import trace
+
+
+def _problem(**choices: object) -> Problem:
+    plant = Plant(
+        lambda x, u: (x.v, u.a),
+        states={"x": "m", "v": "m/s"},
+        controls={"a": ("m/s2", -1.0, 1.0)},
+        name="cart",
+    )
+    settings = {"starts": [[2.0, 0.0], [-1.0, 0.5]], "goal": [0.0, 0.0], "tolerance": 0.05, "horizon": 20.0}
+    return Problem(plant, **(settings | choices))  # type: ignore[arg-type]
+
+
+def _law(problem: Problem) -> Law:
+    program = trace(lambda e: e.error_x + 1.5 * e.error_v, [("e", problem.features.names)], ("a",))
+    return Law(problem.plant, problem.features, program, np.empty(0))
+
+
+def test_a_trajectory_is_the_rollout_of_the_evaluator() -> None:
+    problem = _problem(obstacles=Obstacles(np.array([[5.0, 5.0, 0.0, 0.0, 1.0]]), position=("x", "v")))
+    law = _law(problem)
+    rolled = Evaluator(problem).of_program(law.program, law.parameters)
+    for k, start in enumerate(problem.starts):
+        path = simulate(problem, law, start)
+        assert path.x[0].tolist() == start.tolist()
+        assert path.x[-1].tobytes() == rolled.final[0, k].tobytes()
+        assert (path.arrival, path.cost, path.clearance) == (
+            rolled.arrival[0, k],
+            rolled.cost[0, k],
+            rolled.clearance[0, k],
+        )
+        assert path.t[-1] == rolled.end[0, k]
+
+
+def test_controls_are_the_laws_own_at_each_tick() -> None:
+    problem = _problem()
+    law = _law(problem)
+    path = simulate(problem, law)
+    assert (len(path.t), len(path.u), len(path.target)) == (len(path.x), len(path.x) - 1, len(path.x))
+    assert path.u.tobytes() == law(path.x[:-1], path.target[:-1]).tobytes()
+    assert np.max(np.abs(path.u)) == 1.0
+    assert np.array_equal(path.t, np.arange(len(path.t)) * problem.period)
+
+
+def test_the_target_follows_the_schedule_and_then_the_goal() -> None:
+    schedule = Schedule(np.array([[3.0, 0.0], [1.0, 0.0]]), np.array([0.2, 0.1]))
+    path = simulate(_problem(), _law(_problem()), schedule=schedule, horizon=0.5)
+    assert path.target[:, 0].tolist() == [3.0] * 4 + [1.0] * 2 + [0.0] * 5
+
+
+def test_the_horizon_ends_a_trajectory_that_does_not_arrive() -> None:
+    path = simulate(_problem(), _law(_problem()), horizon=0.5)
+    assert (len(path.t), path.arrival) == (11, np.inf)
+    assert path.t[-1] == 0.5
+
+
+def test_a_start_at_the_goal_is_a_trajectory_of_one_tick() -> None:
+    path = simulate(_problem(), _law(_problem()), np.zeros(2))
+    assert (path.t.tolist(), path.u.shape, path.arrival) == ([0.0], (0, 1), 0.0)
+
+
+def test_a_start_of_the_wrong_shape_is_named() -> None:
+    with pytest.raises(ProblemError, match=r"the start has shape \(3,\); expected \(2,\)"):
+        simulate(_problem(), _law(_problem()), np.zeros(3))

@@ -1,0 +1,80 @@
+"""Stage 1 on a plant whose answer is known: the double integrator."""
+
+import numpy as np
+import pytest
+from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.errors import ProblemError
+from gpsynth.evaluate import Evaluator
+from gpsynth.plant import Plant
+from gpsynth.problem import Problem
+from gpsynth.synthesis import costs_of, synthesize
+
+PLANT = Plant(
+    lambda x, u: (x.speed, u.force),
+    states={"place": "m", "speed": "m/s"},
+    controls={"force": ("N", -5.0, 5.0)},
+    name="double_integrator",
+)
+STARTS = [(1.0, 0.0), (-1.0, 0.5), (0.5, -1.0), (0.0, 1.0)]
+
+
+def quadratic(period: float = 0.05) -> Problem:
+    """Minimize the integral of place^2 + force^2: the optimum is the linear law with gains 1 and sqrt 2."""
+    return Problem(
+        PLANT,
+        STARTS,
+        goal=(0.0, 0.0),
+        tolerance=0.01,
+        horizon=10.0,
+        period=period,
+        running=lambda x, u, goal: (goal.place - x.place) ** 2 + u.force**2,
+        stop=False,
+    )
+
+
+def encoding(problem: Problem) -> TreeEncoding:
+    names = problem.features.names
+    return TreeEncoding(names, ("force",), ("add", "sub", "mul"), ParameterSpace(3, -5.0, 5.0), max_size=9)
+
+
+def synthesized(seed: int, threads: int = 2):
+    problem = quadratic()
+    return synthesize(problem, encoding(problem), seed=seed, budget=4_000, tuning=400, threads=threads)
+
+
+def test_finds_the_linear_quadratic_regulator() -> None:
+    result = synthesized(seed=1)
+    optimum = np.mean(
+        [np.sqrt(2) * (x * x + v * v) + 2 * x * v for x, v in STARTS]
+    )  # x' P x of the Riccati equation
+    assert result.best.cost == pytest.approx(
+        optimum, rel=5e-3
+    )  # zero-order hold and a horizon of 10 s cost a little
+    gains = [float(result.law([-1.0, 0.0], [0.0, 0.0])[0]), float(result.law([0.0, -1.0], [0.0, 0.0])[0])]
+    assert gains == pytest.approx([1.0, np.sqrt(2)], rel=0.1)
+
+
+def test_front_entries_are_scored_on_the_whole_problem() -> None:
+    result = synthesized(seed=2)
+    evaluator = Evaluator(quadratic())
+    for entry in result.front:
+        rollouts = evaluator.of_program(entry.law.program, entry.law.parameters[np.newaxis])
+        assert costs_of(rollouts).mean() == entry.cost
+    assert [entry.cost for entry in result.front] == sorted(
+        (entry.cost for entry in result.front), reverse=True
+    )
+    assert result.table().count("\n") >= len(result.front)
+
+
+def test_threads_do_not_change_the_result() -> None:
+    one, two = synthesized(seed=3, threads=1), synthesized(seed=3, threads=2)
+    assert one.law.hash == two.law.hash
+    assert one.history == two.history
+
+
+def test_encoding_must_fit_the_problem() -> None:
+    problem = quadratic()
+    wrong = TreeEncoding(("place",), ("force",), ("add",))
+    with pytest.raises(ProblemError, match=r"the problem has features \('error_place', 'error_speed'\)"):
+        synthesize(problem, wrong, budget=100)
