@@ -1,6 +1,7 @@
 """Builder: programs written instruction by instruction, equal values shared, dead values dropped, every bit kept."""
 
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 
@@ -106,8 +107,8 @@ class Builder:
         return sorted(operands, key=lambda operand: (self._keys[operand][0] == "constant", operand))
 
     def _operands(self, index: Reference) -> tuple[Reference, ...]:
-        kind, *operands = self._keys[index]
-        return tuple(int(str(operand)) for operand in operands) if kind in CODES else ()
+        key = self._keys[index]
+        return cast(tuple[Reference, ...], key[1:]) if key[0] in CODES else ()
 
     def _rewritten(
         self, name: str, operands: Sequence[Reference], values: Sequence[float | None]

@@ -3,10 +3,11 @@
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
-from gpsynth.arrays import Floats, Ints, frozen
+from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
 from gpsynth.kernels.layout import Clock, Lanes, World, sealed
@@ -35,6 +36,15 @@ class Rollouts:
     final: Floats  # (N, S, n)
 
 
+class _Plans(NamedTuple):
+    points: Floats  # (K, k, n)
+    ends: Floats  # (K, k) s
+    reach: float = 0.0
+
+
+_NO_PLAN = _Plans(np.empty((1, 0, 1)), np.empty((1, 0)))
+
+
 @dataclass(frozen=True)
 class Evaluator:
     """Rolls candidates out on a problem, `threads` slices of lanes at a time.
@@ -44,7 +54,7 @@ class Evaluator:
 
     problem: Problem
     threads: int = 1
-    block: int = 64
+    block: int = 128
     margin: float = 0.0
 
     def of_program(self, program: Program, parameters: Floats) -> Rollouts:
@@ -54,39 +64,37 @@ class Evaluator:
             raise ProblemError(
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
-        return self._roll(program, vectors, _NO_POINTS, _NO_ENDS, len(vectors), self.problem.horizon)
+        return self._roll(program, vectors, _NO_PLAN, self.problem.horizon)
 
-    def of_schedules(self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None) -> Rollouts:
-        """Rollouts (N, S) of one law under N schedules: points (N, k, n) and their dwell times (N, k) in s."""
-        ends = np.cumsum(dwell, axis=1)
-        vectors = law.parameters[np.newaxis]
-        horizon = self.problem.horizon if horizon is None else horizon
-        return self._roll(law.program, vectors, points, ends, len(points), horizon)
-
-    def _roll(
-        self, program: Program, vectors: Floats, points: Floats, ends: Floats, candidates: int, horizon: float
+    def of_schedules(
+        self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None, *, reach: float = 0.0
     ) -> Rollouts:
-        starts = len(self.problem.starts)
+        """Rollouts (N, S) of one law under N schedules: points (N, k, n) and their dwell times (N, k) in s.
+
+        With a positive `reach`, a state this near to its point (Euclidean, angles wrapped, in the units of the
+        states) goes on to the next point at once.
+        """
+        plans = _Plans(points, np.cumsum(dwell, axis=1), reach)
+        horizon = self.problem.horizon if horizon is None else horizon
+        return self._roll(law.program, law.parameters[np.newaxis], plans, horizon)
+
+    def _roll(self, program: Program, vectors: Floats, plans: _Plans, horizon: float) -> Rollouts:
+        """One candidate a parameter vector, or a plan."""
+        starts, candidates = len(self.problem.starts), max(len(vectors), len(plans.points))
         lane = np.arange(candidates * starts, dtype=np.int32)
         picks = np.zeros((len(lane), 3), dtype=np.int32)
         picks[:, 0] = lane % starts
         picks[:, 1 if len(vectors) > 1 else 2] = lane // starts
-        if ends.shape[1] == 0:
-            picks[:, 2] = 0
-        lanes = self._lanes(picks, vectors, points, ends)
-        result = roll(self, program, lanes, horizon, _NO_TRACE)
-        return _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
-
-    def _lanes(self, picks: Ints, vectors: Floats, points: Floats, ends: Floats) -> Lanes:
         lanes = Lanes(
             picks=picks,
             starts=self.problem.starts,
             goals=self.goals,
             parameters=np.ascontiguousarray(vectors),
-            points=np.ascontiguousarray(points, dtype=np.float64),
-            ends=np.ascontiguousarray(ends, dtype=np.float64),
+            points=np.ascontiguousarray(plans.points, dtype=np.float64),
+            ends=np.ascontiguousarray(plans.ends, dtype=np.float64),
         )
-        return sealed(lanes)
+        result = roll(self, program, sealed(lanes), horizon, _NO_TRACE, plans.reach)
+        return _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
 
     @cached_property
     def world(self) -> World:
@@ -119,7 +127,7 @@ class Evaluator:
         problem, tableau = self.problem, TABLEAUS[self.problem.method]
         substeps = round(problem.period / problem.step)
         flags = (problem.hold, problem.stop)
-        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags)
+        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0)
 
     @cached_property
     def goals(self) -> Floats:
@@ -127,10 +135,12 @@ class Evaluator:
         return frozen(np.broadcast_to(self.problem.goal, self.problem.starts.shape))
 
 
-def roll(evaluator: Evaluator, program: Program, lanes: Lanes, horizon: float, trace: Floats) -> Floats:
+def roll(
+    evaluator: Evaluator, program: Program, lanes: Lanes, horizon: float, trace: Floats, reach: float = 0.0
+) -> Floats:
     """The kernel's result (L, ...) for these lanes, computed in slices of whole blocks by the evaluator's threads."""
     rows, code = pack(evaluator.frame, instructions(program), len(program.parameters))
-    clock = evaluator.clock._replace(periods=round(horizon / evaluator.problem.period))
+    clock = evaluator.clock._replace(periods=round(horizon / evaluator.problem.period), reach=reach)
     total, block = len(lanes.picks), evaluator.block
     states, terminals = lanes.starts.shape[1], len(code.arrival) - 1
     result = np.empty((total, rollout.TERMINAL + terminals + states))

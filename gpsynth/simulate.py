@@ -34,11 +34,12 @@ def simulate(
     *,
     schedule: Schedule | None = None,
     horizon: float | None = None,
+    reach: float = 0.0,
 ) -> Trajectory:
     """The closed loop of `law` from `start` (n,), by default the problem's first, until arrival or the horizon (s).
 
-    The target is the problem's goal, or the points of `schedule` and then the goal. Raises ProblemError if the start
-    does not fit.
+    The target is the problem's goal, or the points of `schedule` and then the goal; `reach` as in `of_schedules`.
+    Raises ProblemError if the start does not fit.
     """
     states = len(problem.plant.state_names)
     origin = problem.starts[0] if start is None else np.asarray(start, dtype=np.float64)
@@ -58,7 +59,7 @@ def simulate(
     controls = len(problem.plant.control_names)
     periods = round(horizon / problem.period)
     trace = np.empty((1, periods + 1, 2 * states + controls))
-    result = roll(Evaluator(problem, block=1), law.program, sealed(lanes), horizon, trace)[0]
+    result = roll(Evaluator(problem, block=1), law.program, sealed(lanes), horizon, trace, reach)[0]
     ticks = round(result[rollout.END] / problem.period) + 1
     path = trace[0, :ticks]
     return Trajectory(

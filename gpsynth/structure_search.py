@@ -60,9 +60,18 @@ class SearchState(Generic[G]):
 
     population: tuple[Individual[G], ...]
     front: tuple[Individual[G], ...]
-    tuned: tuple[tuple[Individual[G], CMAESState, int], ...] = ()  # individual, waiting tuner, number of samples
-    groups: tuple[tuple[int, int], ...] = ()  # of each new formula: number of vectors, generation of its ancestor
+    tuned: tuple[
+        tuple[Individual[G], CMAESState, int], ...
+    ] = ()  # individual, waiting tuner, number of samples
+    groups: tuple[
+        tuple[int, int], ...
+    ] = ()  # of each new formula: number of vectors, generation of its ancestor
     generation: int = 0
+
+    @cached_property
+    def specialists(self) -> "_Specialists":
+        """The population as epsilon-lexicase selection sees it."""
+        return _Specialists.of(self.population)
 
 
 @dataclass(frozen=True)
@@ -124,7 +133,9 @@ class StructureSearch(Generic[G]):
             best = first + int(np.argmin(means[first : first + count]))
             if np.isfinite(means[best]):
                 chosen = candidates[best]
-                known[chosen.program] = Individual(chosen.genome, chosen.program, chosen.values, costs[best], born)
+                known[chosen.program] = Individual(
+                    chosen.genome, chosen.program, chosen.values, costs[best], born
+                )
             first += count
         for individual, waiting, count in state.tuned:
             asked = slice(first, first + count)
@@ -181,7 +192,7 @@ class StructureSearch(Generic[G]):
         if draw < self.simple:
             return state.front[int(rng.integers(len(state.front)))]
         if draw < self.simple + self.lexicase:
-            return _specialist(state.population, rng)
+            return state.population[state.specialists.draw(rng)]
         return state.population[int(rng.integers(len(state.population), size=self.tournament).min())]
 
     def _vectors(self, genome: G, program: Program, rng: np.random.Generator) -> list[Floats]:
@@ -197,7 +208,9 @@ class StructureSearch(Generic[G]):
     def _to_tune(self, state: SearchState[G]) -> list[Individual[G]]:
         """The best formulas with numbers that still improve, small ones of the front among them."""
         ranked = (*state.population[: 2 * self.tuned], *state.front)
-        unique = {individual.program: individual for individual in ranked if _uses_parameters(individual.program)}
+        unique = {
+            individual.program: individual for individual in ranked if _uses_parameters(individual.program)
+        }
         lively = [individual for individual in unique.values() if individual.idle < self.patience]
         return lively[: self.tuned]
 
@@ -225,20 +238,32 @@ class StructureSearch(Generic[G]):
 
 def _uses_parameters(program: Program) -> bool:
     first = len(program.inputs)
-    return bool(np.any((program.code[:, 1:] >= first) & (program.code[:, 1:] < first + len(program.parameters))))
+    return bool(
+        np.any((program.code[:, 1:] >= first) & (program.code[:, 1:] < first + len(program.parameters)))
+    )
 
 
-def _specialist(population: Sequence[Individual[G]], rng: np.random.Generator) -> Individual[G]:
-    """Epsilon-lexicase selection (La Cava et al. 2016): starts in random order, those near the best of each survive."""
-    cases = np.array([individual.cases for individual in population])
-    left = np.arange(len(population))
-    for case in rng.permutation(cases.shape[1]):
-        column = cases[left, case]
-        spread = np.median(np.abs(column - np.median(column)))
-        left = left[column <= column.min() + spread]
-        if len(left) == 1:
-            break
-    return population[int(left[int(rng.integers(len(left)))])]
+@dataclass(frozen=True, eq=False)
+class _Specialists:
+    """Epsilon-lexicase selection (La Cava et al. 2016), epsilon being the median deviation in the population."""
+
+    cases: Floats  # (individuals, S)
+    epsilon: Floats  # (S,)
+
+    @classmethod
+    def of(cls, population: Sequence[Individual[G]]) -> "_Specialists":
+        cases = np.array([individual.cases for individual in population])
+        return cls(cases, np.median(np.abs(cases - np.median(cases, axis=0)), axis=0))
+
+    def draw(self, rng: np.random.Generator) -> int:
+        """Starts come up in random order, and who is near the best of those left stays, until one is left."""
+        left = np.arange(len(self.cases))
+        for case in rng.permutation(self.cases.shape[1]):
+            column = self.cases[left, case]
+            left = left[column <= column.min() + self.epsilon[case]]
+            if len(left) == 1:
+                break
+        return int(left[int(rng.integers(len(left)))])
 
 
 def _survivors(ordered: Sequence[Individual[G]], count: int) -> tuple[Individual[G], ...]:
@@ -249,7 +274,9 @@ def _survivors(ordered: Sequence[Individual[G]], count: int) -> tuple[Individual
     left = list(ordered)
     kept: list[Individual[G]] = []
     while left and len(kept) < count:
-        youngest, front, rest = -1, [], []
+        youngest = -1
+        front: list[Individual[G]] = []
+        rest: list[Individual[G]] = []
         for individual in left:
             (front if individual.born > youngest else rest).append(individual)
             youngest = max(youngest, individual.born)

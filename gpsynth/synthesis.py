@@ -25,10 +25,10 @@ SEARCH, TUNING = 1, 2  # stages of the random streams
 
 @dataclass(frozen=True, eq=False)
 class FrontEntry:
-    """One law of the front and how it fares on the whole problem."""
+    """One law of the front and how it fares on the problem and the trials."""
 
     law: Law
-    cost: float  # mean over the starts of running and terminal cost
+    cost: float  # mean over the starts, of the trials too, of running and terminal cost
     complexity: int  # instructions of the formula
     reached: float  # share of the starts from which the goal is reached
     median_time: float  # s, of the arrivals
@@ -71,6 +71,7 @@ def synthesize(
     tuning: int = 2_000,
     search: StructureSearch[G] | None = None,
     rough: Problem | None = None,
+    trials: Sequence[Problem] = (),
     threads: int = 2,
     progress: bool = False,
     callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
@@ -78,9 +79,11 @@ def synthesize(
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
     An evaluation is one parameter vector of one formula rolled out from all starts. The search may use a `rough`
-    problem (fewer starts, longer steps); every law of the front is tuned with at most `tuning` evaluations, and
-    scored, on `problem` itself. The same seed gives the same result for any number of threads. Raises ProblemError
-    if the encoding's inputs and outputs are not the problem's features and controls.
+    problem (fewer starts, longer steps); every law of the front is tuned on `problem` itself, with at most `tuning`
+    evaluations. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps,
+    another plant), which no search has seen, so that a law that only fits its training loses. The same seed gives
+    the same result for any number of threads. Raises ProblemError if the encoding's inputs and outputs are not the
+    problem's features and controls.
     """
     features, controls = problem.features.names, tuple(problem.plant.control_names)
     if encoding.inputs != features or encoding.outputs != controls:
@@ -93,13 +96,14 @@ def synthesize(
     found = minimize(
         cost, strategy, seed=seed, budget=budget, path=(SEARCH,), progress=progress, callback=callback
     )
-    evaluator = Evaluator(problem)
-    spaces = [
-        (individual, number) for number, individual in enumerate(found.state.front) if np.isfinite(individual.cost)
-    ]
+    evaluators = [Evaluator(each) for each in (problem, *trials)]
+
+    def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
+        program, values = _tuned(evaluators[0], encoding, *numbered, seed=seed, budget=tuning)
+        return _entry(evaluators, program, values)
+
     with ThreadPoolExecutor(threads) as pool:
-        tuned = list(pool.map(lambda item: _tuned(evaluator, encoding, *item, seed=seed, budget=tuning), spaces))
-    entries = [_entry(evaluator, program, values) for program, values in tuned]
+        entries = list(pool.map(entry, enumerate(found.state.front)))
     return SynthesisResult(_front(entries), found.evaluations, found.history, found.reason)
 
 
@@ -126,7 +130,13 @@ def batch_cost(evaluator: Evaluator, threads: int) -> Callable[[Sequence[Candida
 
 
 def _tuned(
-    evaluator: Evaluator, encoding: Encoding[G], individual: Individual[G], number: int, *, seed: int, budget: int
+    evaluator: Evaluator,
+    encoding: Encoding[G],
+    number: int,
+    individual: Individual[G],
+    *,
+    seed: int,
+    budget: int,
 ) -> tuple[Program, Floats]:
     """The formula of a front member with its numbers tuned on the evaluator's problem."""
     program, values = individual.program, individual.values
@@ -145,14 +155,14 @@ def _tuned(
     return (program, found.x) if found.cost < before else (program, values)
 
 
-def _entry(evaluator: Evaluator, program: Program, values: Floats) -> FrontEntry:
-    problem = evaluator.problem
-    rollouts = evaluator.of_program(program, values[np.newaxis])
-    arrival = rollouts.arrival[0]
+def _entry(evaluators: Sequence[Evaluator], program: Program, values: Floats) -> FrontEntry:
+    problem = evaluators[0].problem
+    rollouts = [evaluator.of_program(program, values[np.newaxis]) for evaluator in evaluators]
+    arrival = np.concatenate([each.arrival[0] for each in rollouts])
     reached = np.isfinite(arrival)
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
-        cost=float(costs_of(rollouts)[0].mean()),
+        cost=float(np.concatenate([costs_of(each)[0] for each in rollouts]).mean()),
         complexity=program.complexity,
         reached=float(reached.mean()),
         median_time=float(np.median(arrival[reached])) if reached.any() else float("inf"),

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from applications.rosbot.__main__ import cli as rosbot
-from docs.generate import operations_page
+from docs.generate import architecture_page, operations_page
 from gpsynth.cli import cli as gpsynth
 from gpsynth.operations import OPERATIONS
 from tests.bench.paper_numbers import bounds, facts
@@ -94,6 +94,12 @@ def test_the_page_of_operations_is_current_and_covers_the_table():
     page = (DOCS / "operations.md").read_text("utf-8")
     assert page == operations_page(), "run python -m docs.generate"
     assert all(page.count(f"\n| `{operation.name}` |") == 1 for operation in OPERATIONS)
+
+
+def test_the_layers_are_those_of_the_import_contract():
+    page = (DOCS / "architecture.md").read_text("utf-8")
+    assert "kernels | optimizers" in page
+    assert page == architecture_page(), "run python -m docs.generate"
 
 
 @pytest.mark.parametrize("table", [bounds, facts])

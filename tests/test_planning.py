@@ -1,6 +1,7 @@
 """Stage 2 for any plant: the cost, its rounds, and what a plan promises."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -8,7 +9,9 @@ import pytest
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
+from gpsynth.optimizers import PSO, minimize
 from gpsynth.planning import Objective, PlanSettings, plan
+from gpsynth.planning.rounds import rescored
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
 from gpsynth.schedule import Schedule
@@ -71,15 +74,30 @@ def test_the_time_budget_only_tightens_and_ends_at_the_plan(setting):
     found = plan(*setting, SMALL, seed=2)
     times = [budget for _, budget in found.history]
     assert times[0] == setting[0].horizon
-    assert all(later <= earlier for earlier, later in zip(times, times[1:], strict=False))
+    assert all(later <= earlier for earlier, later in pairwise(times))
     assert times[-1] == found.arrival_time
 
 
-def test_a_plan_once_found_is_never_lost(setting):
+@pytest.mark.parametrize("seed", range(8))
+def test_a_plan_once_found_is_never_lost(setting, seed):
     seen = []
-    plan(*setting, replace(SMALL, rounds=8), seed=5, callback=lambda each: seen.append(each.arrival_time))
-    assert len(seen) == 7  # the last round has no further one to stop
-    assert all(later <= earlier for earlier, later in zip(seen, seen[1:], strict=False))
+    # with equal dwell times a new T+ moves the switching times, so that old plans can fail
+    equal = replace(SMALL, dwell=None, particles=12, iterations=4, rounds=8)
+    plan(*setting, equal, seed=seed, callback=lambda each: seen.append(each.rank))
+    assert len(seen) == 8
+    assert all(later <= earlier for earlier, later in pairwise(seen))
+
+
+def test_personal_bests_are_scored_anew_under_a_tighter_budget(setting):
+    settings = replace(PlanSettings.paper(2, particles=16), obstacles="path")  # equal dwell times follow T+
+    loose, tight = (objective(setting, settings, budget) for budget in (12.0, 6.0))
+    lower, upper = np.tile([-1.0, -3.0], 2), np.tile([5.0, 3.0], 2)
+    found = minimize(loose, PSO(lower, upper, size=16), seed=1, budget=64)
+    start = rescored(found, tight)
+    assert np.array_equal(start.state.best_costs, tight(found.state.best_x))
+    assert not np.array_equal(start.state.best_costs, found.state.best_costs)
+    assert start.evaluations == 64 + 16
+    assert start.history == ()
 
 
 def test_the_callback_stops_the_search(setting):
@@ -109,7 +127,9 @@ def test_the_paper_cost_is_equation_17(setting):
     points, dwell = cost.schedules(vectors)
     assert np.array_equal(dwell, np.full((2, 2), 2.0))  # T+ / 3, the goal being the third point
     rollouts = cost.rollouts(points, dwell)
-    used = np.where(np.isinf(rollouts.arrival), rollouts.end, cost.arrivals(rollouts, points, dwell)[:, None])[:, 0]
+    used = np.where(
+        np.isinf(rollouts.arrival), rollouts.end, cost.arrivals(rollouts, points, dwell)[:, None]
+    )[:, 0]
     error = np.linalg.norm(rollouts.final[:, 0] - [4.0, 0.0], axis=1)
     expected = 10.0 * error + 0.25 * (np.maximum(0.0, used - 6.0) + used / 6.0) + 5.0 * np.array([1.0, 0.0])
     assert np.allclose(cost(vectors), expected, rtol=1e-15, atol=0.0)
@@ -121,7 +141,9 @@ def test_the_path_counts_where_points_are_clear(setting):
     on_path = objective(setting, SMALL, budget=6.0)
     on_points = objective(setting, replace(SMALL, obstacles="points"), budget=6.0)
     assert on_path(straight) > on_path(detour) + SMALL.gamma
-    assert on_points(straight) < 1.0 < SMALL.gamma  # arrived straight through the disc, and no point lies in it
+    assert (
+        on_points(straight) < 1.0 < SMALL.gamma
+    )  # arrived straight through the disc, and no point lies in it
 
 
 def test_arrival_is_found_between_the_control_periods(setting):
@@ -131,7 +153,13 @@ def test_arrival_is_found_between_the_control_periods(setting):
     coarse = objective((problem, law), settings, budget=12.0)
     points, dwell = coarse.schedules(vector)
     fine_problem = Problem(
-        problem.plant, problem.starts, problem.goal, tolerance=problem.tolerance, horizon=12.0, period=0.05, step=0.05
+        problem.plant,
+        problem.starts,
+        problem.goal,
+        tolerance=problem.tolerance,
+        horizon=12.0,
+        period=0.05,
+        step=0.05,
     )
     fine = simulate(fine_problem, law, schedule=Schedule(points[0], dwell[0]))
     time = coarse.arrivals(coarse.rollouts(points, dwell), points, dwell)[0]
@@ -152,7 +180,9 @@ def test_cost_does_not_depend_on_what_else_is_evaluated(setting):
 
 def test_what_does_not_fit_is_said(setting):
     problem, law = setting
-    with pytest.raises(ProblemError, match=r"an initial schedule has points of shape \(1, 2\); expected \(2, 2\)"):
+    with pytest.raises(
+        ProblemError, match=r"an initial schedule has points of shape \(1, 2\); expected \(2, 2\)"
+    ):
         plan(problem, law, SMALL, initial=[Schedule(np.zeros((1, 2)), np.ones(1))])
     with pytest.raises(ProblemError, match="a plan begins at one start; the problem has 2"):
         plan(Problem(problem.plant, np.zeros((2, 2)), [4.0, 0.0], tolerance=[0.1, 0.1]), law, SMALL)

@@ -75,3 +75,32 @@ def test_a_start_at_the_goal_is_a_trajectory_of_one_tick() -> None:
 def test_a_start_of_the_wrong_shape_is_named() -> None:
     with pytest.raises(ProblemError, match=r"the start has shape \(3,\); expected \(2,\)"):
         simulate(_problem(), _law(_problem()), np.zeros(3))
+
+
+def _approaching(reach: float, dwell: list[float]) -> list[float]:
+    """Targets at each tick of x' = target - x held over 0.25 s, from 2 by way of 8 and 4 to 0."""
+    plant = Plant(lambda x, u: (u.v,), {"x": "m"}, {"v": ("m/s", -99.0, 99.0)})
+    problem = Problem(plant, [2.0], [0.0], tolerance=1e-12, period=0.25, horizon=4.0)
+    program = trace(lambda e: (e.error_x,), [("e", problem.features.names)], ("v",))
+    law = Law(plant, problem.features, program, np.empty(0))
+    schedule = Schedule(np.array([[8.0], [4.0]]), np.array(dwell))
+    return simulate(problem, law, schedule=schedule, reach=reach).target[:, 0].tolist()
+
+
+def _by_hand(reach: float, dwell: list[float]) -> list[float]:
+    x, passed, left, targets = 2.0, 0, list(dwell), []
+    points = [8.0, 4.0, 0.0]
+    for _ in range(17):
+        while passed < 2 and (left[passed] <= 0.0 or (reach > 0.0 and abs(points[passed] - x) <= reach)):
+            passed += 1
+        targets.append(points[passed])
+        x += 0.25 * (points[passed] - x)
+        if passed < 2:
+            left[passed] -= 0.25
+    return targets
+
+
+@pytest.mark.parametrize("reach", [0.0, 0.5, 3.0, 7.0])
+@pytest.mark.parametrize("dwell", [[2.0, 1.0], [0.5, 3.0], [9.0, 0.25]])
+def test_a_point_within_reach_is_left_at_once(reach: float, dwell: list[float]) -> None:
+    assert _approaching(reach, dwell) == _by_hand(reach, dwell)

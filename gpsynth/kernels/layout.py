@@ -63,6 +63,9 @@ class Clock(NamedTuple):
     periods: int
     hold: bool  # the control is held over the period, else computed at every stage
     stop: bool  # a lane ends when it arrives
+    reach: (
+        float  # distance at which a point counts as reached and the next is due at once; 0: dwell times alone
+    )
 
 
 class World(NamedTuple):
@@ -78,7 +81,7 @@ _INTEGER, _NUMBER, _FLAG = types.int64, types.float64, types.boolean
 ROWS = types.NamedUniTuple(_INTEGER, len(Rows._fields), Rows)
 CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, INTEGERS, INTEGERS), Code)
 LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
-CLOCK = types.NamedTuple((MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG), Clock)
+CLOCK = types.NamedTuple((MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER), Clock)
 WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
 
 Group = TypeVar("Group", bound=tuple[Any, ...])

@@ -5,6 +5,8 @@ inner loop is a plain array loop. What happens in one lane never touches another
 for any block size and any number of threads.
 """
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 from numba import types
@@ -12,7 +14,7 @@ from numba import types
 from gpsynth.arrays import Floats
 from gpsynth.kernels import trigonometry
 from gpsynth.kernels.clearance import approach
-from gpsynth.kernels.compile import OUT_MATRIX, OUT_TENSOR, kernel, widest_vectors
+from gpsynth.kernels.compile import OUT_MATRIX, OUT_TENSOR, VECTOR, kernel, widest_vectors
 from gpsynth.kernels.layout import CLOCK, CODES, LANES, ROWS, WORLD, Clock, Code, Lanes, Rows, World
 from gpsynth.kernels.machine import execute
 
@@ -43,15 +45,62 @@ def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int
         w[rows.near, lane] = np.inf
 
 
-@kernel(types.void(OUT_MATRIX, ROWS, LANES, types.int64[::1], _INTEGER, _INTEGER, _NUMBER))
+@kernel(_NUMBER(OUT_MATRIX, ROWS, CODES, VECTOR, _INTEGER))
+def distance(w: Floats, rows: Rows, code: Code, point: Floats, lane: int) -> float:
+    """Euclidean distance of a lane's state from `point` (n,), angles wrapped, in the units of the states."""
+    square = 0.0
+    for i in range(len(point)):
+        error = point[i] - w[rows.state + i, lane]
+        for k in range(len(code.angles)):
+            error = trigonometry.wrap(error) if code.angles[k] == i else error
+        square += error * error
+    return math.sqrt(square)
+
+
+@kernel(
+    types.void(
+        *(
+            OUT_MATRIX,
+            ROWS,
+            CODES,
+            LANES,
+            CLOCK,
+            types.int64[::1],
+            types.float64[::1],
+            _INTEGER,
+            _INTEGER,
+            _NUMBER,
+        )
+    )
+)
 def retarget(
-    w: Floats, rows: Rows, lanes: Lanes, passed: npt.NDArray[np.int64], first: int, count: int, time: float
+    w: Floats,
+    rows: Rows,
+    code: Code,
+    lanes: Lanes,
+    clock: Clock,
+    passed: npt.NDArray[np.int64],
+    shift: Floats,
+    first: int,
+    count: int,
+    time: float,
 ) -> None:
-    """Move each lane's target to the point of its schedule that is due at `time`; after the last comes the goal."""
+    """Move each lane's target to the point of its schedule that is due at `time`; after the last comes the goal.
+
+    passed: points that a lane has behind it; shift: how much earlier than planned its points end, s, at most 0.
+    """
     k, n = lanes.ends.shape[1], lanes.starts.shape[1]
     for lane in range(count):
         plan, due = lanes.picks[first + lane, 2], passed[lane]
-        while due < k and time >= lanes.ends[plan, due] - INSTANT:
+        while due < k:
+            over = time >= lanes.ends[plan, due] + shift[lane] - INSTANT
+            if not over:
+                if not (
+                    clock.reach > 0.0
+                    and distance(w, rows, code, lanes.points[plan, due], lane) <= clock.reach
+                ):
+                    break
+                shift[lane] = time - lanes.ends[plan, due]
             due += 1
         passed[lane] = due
         for i in range(n):
@@ -182,15 +231,17 @@ def roll(
     n = lanes.starts.shape[1]
     w = workspace(rows.total, block)
     passed = np.empty(block, np.int64)
+    shift = np.empty(block)
     last_slope = rows.slope + (len(clock.b) - 1) * (n + 1)
     for begin in range(first, last, block):
         count = min(block, last - begin)
         load(w, rows, code, lanes, begin, count)
         passed[:] = 0
+        shift[:] = 0.0
         for period in range(clock.periods + 1):
             time = period * clock.substeps * clock.step
             if lanes.ends.shape[1] > 0:
-                retarget(w, rows, lanes, passed, begin, count, time)
+                retarget(w, rows, code, lanes, clock, passed, shift, begin, count, time)
             running = judge(w, rows, code, clock, n, count, time)
             if clock.hold or len(trace) > 0:
                 execute(code.instructions, 0, code.ends[0], w, count)

@@ -187,7 +187,7 @@ def _by_hand(targets: list[float]) -> float:
         ([0.0, 0.75], [4.0] * 3 + [0.0] * 5),
         ([0.0, 0.0], [0.0] * 8),
         ([0.3, 0.3], [8.0] * 2 + [4.0] + [0.0] * 5),
-        ([0.1 + 0.2 + 0.2, 99.0], [8.0] * 2 + [4.0] * 6),
+        ([np.nextafter(0.5, 1.0), 99.0], [8.0] * 2 + [4.0] * 6),
     ],
 )
 def test_targets_switch_at_the_first_tick_that_is_due(dwell: list[float], ticks: list[float]) -> None:

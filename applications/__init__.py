@@ -1,0 +1,1 @@
+"""Complete uses of gpsynth, each on one plant."""

@@ -1,0 +1,1 @@
+"""The ROSbot: stabilizer synthesis, motion planning among obstacles, and driving."""

@@ -1,0 +1,117 @@
+"""The command `python -m applications.rosbot`: synthesize a stabilizer, plan with it, export it, show what came out."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from gpsynth.cli import (
+    ENCODINGS,
+    LOADING,
+    EncodingName,
+    begin,
+    export,
+    load_law,
+    run,
+    seed_option,
+    status,
+    threads_option,
+)
+
+PATH = click.Path(path_type=Path)
+NO_PLAN = 3  # exit code where the goal is unreachable or no plan was found
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and give the exit code."""
+    return run(cli, arguments, name="python -m applications.rosbot")
+
+
+@click.group()
+def cli() -> None:
+    """The ROSbot: a stabilizer found by genetic programming, and plans that move its equilibrium point."""
+
+
+cli.add_command(export)
+
+
+@cli.command()
+@click.option("--out", type=PATH, default=Path("runs/rosbot"), show_default=True, help="Run folder.")
+@click.option("--short", is_flag=True, help="A small search, to see that everything works.")
+@seed_option
+@threads_option
+def demo(out: Path, short: bool, seed: int, threads: int) -> int:
+    """Both stages on the paper's scenario.
+
+    From scratch, with obstacles and without; the run folder holds the law, the plans and their pictures.
+    """
+    with status(LOADING):
+        from applications.rosbot.demo import run_demo
+    plans = run_demo(out, seed=seed, short=short, threads=threads)
+    return 0 if all(each.is_found for each in plans) else NO_PLAN
+
+
+@cli.command()
+@click.option("--out", type=PATH, default=Path("runs/stabilizer"), show_default=True, help="Run folder.")
+@click.option("--budget", type=click.IntRange(min=1), help="Evaluations. [default: as in the demo]")
+@click.option("--encoding", type=click.Choice(ENCODINGS), default="tree", show_default=True)
+@seed_option
+@threads_option
+def synthesize(out: Path, budget: int | None, encoding: EncodingName, seed: int, threads: int) -> None:
+    """Stage 1: find a stabilizer from scratch."""
+    with status(LOADING):
+        from applications.rosbot.stages import run_synthesis
+    folder = begin(out, seed)
+    result = run_synthesis(folder, seed=seed, budget=budget, encoding=encoding, threads=threads)
+    click.echo(result.table())
+    click.echo(f"the law of least cost, its exports and the front are in {out}")
+
+
+@cli.command()
+@click.argument("scenario_file", metavar="SCENARIO.json", type=PATH)
+@click.option("--out", type=PATH, required=True, help="Folder for plan.json and its picture.")
+@click.option("--law", "law_file", metavar="LAW.json", type=PATH, help="[default: the law that comes along]")
+@seed_option
+@threads_option
+def plan(scenario_file: Path, out: Path, law_file: Path | None, seed: int, threads: int) -> int:
+    """Stage 2: plan for a scenario.
+
+    Exit code 0 with a plan, 3 if the goal is unreachable or no plan was found, 2 if the input is wrong; plan.json
+    says which and why.
+    """
+    with status(LOADING):
+        from applications.rosbot.scenario_file import read_scenario
+        from applications.rosbot.show import print_plans, read_plan
+        from applications.rosbot.stabilizer import default_law
+        from applications.rosbot.stages import load_steering_law, run_plan
+    name = read_scenario(scenario_file).name  # and every complaint about it before anything is written
+    law = load_steering_law(law_file) if law_file else default_law()
+    made = read_plan(run_plan(begin(out, seed), scenario_file, law, seed=seed, threads=threads))
+    print_plans([(name, made)])
+    return 0 if made.is_found else NO_PLAN
+
+
+@cli.command()
+@click.argument("place", metavar="RUN_OR_PLAN", type=PATH)
+def show(place: Path) -> None:
+    """Print what a run or plan.json holds.
+
+    RUN_OR_PLAN is a run folder or a plan.json. The pictures of its plans are drawn anew.
+    """
+    from applications.rosbot.show import name_of, plan_files, print_plans, read_plan, redraw
+    from gpsynth.errors import FileError
+
+    files, law_file = plan_files(place), place / "law.json"
+    if not files and not law_file.exists():
+        raise FileError(f"{place} holds neither a plan.json nor a law.json")
+    if law_file.exists():
+        click.echo("\n".join(load_law(law_file).formulas()))
+    if files:
+        print_plans([(name_of(path), read_plan(path)) for path in files])
+    for picture in filter(None, map(redraw, files)):
+        click.echo(f"drawn: {picture}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

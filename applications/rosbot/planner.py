@@ -1,0 +1,146 @@
+"""Plans for scenarios: what can be reached is searched for, and what is found is replayed by another simulator."""
+
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from applications.rosbot.bounds import lower_bound
+from applications.rosbot.model import reached
+from applications.rosbot.reachability import reachability
+from applications.rosbot.replay import Replay, replay
+from applications.rosbot.routes import routes
+from applications.rosbot.scenario import Scenario
+from applications.rosbot.swarms import Callback, Effort, Search, Swarm, first_budget
+from gpsynth.errors import ScenarioError
+from gpsynth.law import Law
+from gpsynth.planning import Plan
+from gpsynth.problem import Obstacles, Problem
+
+__all__ = ["PERIOD", "Effort", "PlanReport", "plan_scenario", "problem_of"]
+
+PERIOD = 0.05  # s of the control: 2.5 cm at 0.5 m/s; twice as long costs time at every switch, half as long computing
+INSIDE = (0.001, 0.002)  # m, rad: how far within the tolerance a plan arrives, so that no rounding undoes it
+
+
+@dataclass(frozen=True, eq=False)
+class PlanReport:
+    """What planning came to."""
+
+    status: Literal["planned", "unreachable", "not_found"]
+    reason: str  # empty for a plan
+    planning_time: float  # s
+    evaluations: int
+    lower_bound: float  # s
+    seed: int
+    plan: Plan | None = None
+    law: Law | None = None
+    replay: Replay | None = None  # by the simulator that shares nothing with the planner's
+    history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
+
+    @property
+    def ratio(self) -> float:
+        """Arrival time over its lower bound; infinity without a plan."""
+        if self.replay is None:
+            return np.inf
+        arrival_time = self.replay.arrival_time
+        return 1.0 if arrival_time <= self.lower_bound else arrival_time / (self.lower_bound or np.nan)
+
+
+def plan_scenario(
+    scenario: Scenario,
+    laws: Sequence[Law],
+    *,
+    seed: int = 0,
+    effort: Effort = Effort(),
+    threads: int = 1,
+    callback: Callback | None = None,
+) -> PlanReport:
+    """The fastest collision-free plan found with any of the laws; the same seed gives the same plan.
+
+    `callback` gets every swarm's best plan after each of its rounds, not yet replayed; returning True ends that swarm.
+    Raises ScenarioError if there is no law, or one that does not steer v and omega.
+    """
+    began = time.perf_counter()
+    problems = _problems(scenario, laws)
+    verdict = reachability(scenario)
+    report = PlanReport("unreachable", verdict.reason, 0.0, 0, lower_bound(scenario), seed)
+    if verdict.status != "unreachable":
+        ways = routes(scenario, margin=effort.scouts.margin)
+        budget, found = first_budget(scenario, ways), list[Swarm]()
+        for attempt in range(effort.attempts):
+            with ThreadPoolExecutor(threads) as pool:
+                search = Search(scenario, problems, effort, seed, attempt, pool, callback)
+                found += search.run(ways, min(budget * 2.0**attempt, scenario.time_limit))
+            report = _verified(scenario, found, report)
+            if report.status == "planned":
+                break
+    return replace(report, planning_time=time.perf_counter() - began)
+
+
+def problem_of(scenario: Scenario, law: Law) -> Problem:
+    """The scenario as a problem for a law: least time into the tolerance, a little within its edge."""
+    position, heading = scenario.position_tolerance, scenario.heading_tolerance
+    shrunk = max(0.5 * position, position - INSIDE[0]), max(0.5 * heading, heading - INSIDE[1])
+    return Problem(
+        law.plant,
+        scenario.start,
+        scenario.goal,
+        tolerance=[shrunk[0], shrunk[0], shrunk[1]],
+        horizon=max(PERIOD, scenario.time_limit - PERIOD),
+        period=PERIOD,
+        features=law.features,
+        reached=reached(*shrunk),
+        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
+    )
+
+
+def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, Law]]:
+    """The laws under the scenario's limits, each with the problem as it sees it."""
+    if not laws:
+        raise ScenarioError("a plan needs at least one law")
+    for law in laws:
+        if law.plant.control_names != ("v", "omega"):
+            raise ScenarioError(
+                f"the law steers {', '.join(law.plant.control_names)}; a scenario needs v, omega"
+            )
+    low, high = zip(scenario.speed_limits, scenario.turn_limits, strict=True)
+    adapted = [law.with_limits(low, high) for law in laws]
+    return [(problem_of(scenario, law), law) for law in adapted]
+
+
+def _verified(scenario: Scenario, swarms: Sequence[Swarm], report: PlanReport) -> PlanReport:
+    """The fastest plan that the other simulator confirms, or that there is none."""
+    plans = [swarm.plan for swarm in swarms]
+    evaluations = sum(plan.evaluations for plan in plans)
+    for swarm in sorted(swarms, key=lambda swarm: swarm.plan.rank):
+        check = replay(scenario, swarm.plan.trajectory.u, PERIOD) if swarm.plan.is_free else None
+        if check is not None and check.solves:
+            return replace(
+                report,
+                status="planned",
+                reason="",
+                evaluations=evaluations,
+                plan=swarm.plan,
+                law=swarm.law,
+                replay=check,
+                history=_improvements(plans),
+            )
+    reason = (
+        f"no collision-free plan within {scenario.time_limit:g} s was found; the goal may still be reachable"
+    )
+    return replace(report, status="not_found", reason=reason, evaluations=evaluations)
+
+
+def _improvements(plans: Sequence[Plan]) -> tuple[tuple[int, float], ...]:
+    """(evaluations, arrival time) at every improvement, as if the searches had run one after the other."""
+    spent, best, history = 0, np.inf, []
+    for each in plans:
+        spent += each.evaluations
+        if each.is_free and each.arrival_time < best:
+            best = each.arrival_time
+            history.append((spent, best))
+    return tuple(history)

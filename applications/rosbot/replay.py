@@ -1,0 +1,109 @@
+"""A simulator that shares no line with the planner's own: what plans are judged by."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from applications.rosbot.scenario import Scenario
+from gpsynth.arrays import Floats, frozen
+from gpsynth.errors import ScenarioError
+
+STEP = 1e-3  # s; at 0.5 m/s the robot moves half a millimeter in it
+SLACK = 1e-6  # m and rad; what rounding may cost a path that touches an obstacle or just arrives
+
+
+@dataclass(frozen=True, eq=False)
+class Replay:
+    """What became of the controls, up to the arrival if there is one."""
+
+    arrival_time: float  # s, first sample within the goal's tolerance; inf if none is
+    clearance: float  # m, smallest gap between robot and obstacles at the samples; inf without obstacles
+    in_limits: bool
+    in_bounds: bool
+    in_time: bool
+    trajectory: Floats  # (N, 4) s, m, m, rad
+
+    @property
+    def solves(self) -> bool:
+        """Whether the goal is reached in time, within the limits and bounds, and without a collision."""
+        return self.in_time and self.in_limits and self.in_bounds and self.clearance >= -SLACK
+
+
+def replay(scenario: Scenario, controls: Floats, period: float | Floats) -> Replay:
+    """Drive (v, omega) pairs, (n, 2), for `period` seconds each (one number, or one per pair), in steps of 1 ms.
+
+    The robot starts at the scenario's start and stops at the end of the controls.
+    """
+    controls = np.asarray(controls, dtype=np.float64)
+    durations = np.broadcast_to(np.asarray(period, dtype=np.float64), (len(controls),))
+    _check(controls, durations)
+    trajectory = drive(scenario.start, controls, durations)
+    errors = trajectory[:, 1:] - scenario.goal
+    distance = np.hypot(errors[:, 0], errors[:, 1])
+    turn = np.abs(np.remainder(errors[:, 2] + np.pi, 2.0 * np.pi) - np.pi)
+    within = (distance <= scenario.position_tolerance + SLACK) & (turn <= scenario.heading_tolerance + SLACK)
+    arrived = bool(np.any(within))
+    trajectory = trajectory[: int(np.argmax(within)) + 1] if arrived else trajectory
+    arrival_time = float(trajectory[-1, 0]) if arrived else np.inf
+    return Replay(
+        arrival_time=arrival_time,
+        clearance=clearance(scenario, trajectory),
+        in_limits=_in_limits(scenario, controls),
+        in_bounds=_in_bounds(scenario, trajectory),
+        in_time=arrival_time <= scenario.time_limit,
+        trajectory=frozen(trajectory),
+    )
+
+
+def drive(start: Floats, controls: Floats, durations: Floats) -> Floats:
+    """The poses (N, 4) at steps of at most 1 ms and at every change of the controls, by classical Runge-Kutta.
+
+    The rates depend on the heading only and the heading is linear in time, so a Runge-Kutta step is Simpson's rule
+    and all steps are taken at once.
+    """
+    counts = np.ceil(durations / STEP - 1e-9).astype(int)
+    counts[durations > 0.0] = np.maximum(counts[durations > 0.0], 1)
+    steps = np.repeat(durations / np.maximum(counts, 1), counts)
+    v, omega = np.repeat(controls, counts, axis=0).T
+    turns = steps * omega
+    heading = start[2] + np.concatenate([[0.0], np.cumsum(turns)])
+    before, middle, after = heading[:-1], heading[:-1] + 0.5 * turns, heading[1:]
+    dx = steps * v / 6.0 * (np.cos(before) + 4.0 * np.cos(middle) + np.cos(after))
+    dy = steps * v / 6.0 * (np.sin(before) + 4.0 * np.sin(middle) + np.sin(after))
+    trajectory = np.empty((len(steps) + 1, 4))
+    trajectory[0] = 0.0, *start
+    trajectory[1:, 0] = np.cumsum(steps)
+    trajectory[1:, 1] = start[0] + np.cumsum(dx)
+    trajectory[1:, 2] = start[1] + np.cumsum(dy)
+    trajectory[:, 3] = heading
+    return trajectory
+
+
+def clearance(scenario: Scenario, trajectory: Floats) -> float:
+    """The smallest gap (m) between the robot and the obstacles, moving ones where they then are; inf without any."""
+    t, x, y, _ = trajectory.T
+    gaps = (
+        np.sqrt(np.min((x - cx - vx * t) ** 2 + (y - cy - vy * t) ** 2)) - radius - scenario.radius
+        for cx, cy, vx, vy, radius in scenario.circles
+    )
+    return float(min(gaps, default=np.inf))
+
+
+def _in_limits(scenario: Scenario, controls: Floats) -> bool:
+    low, high = np.array([scenario.speed_limits, scenario.turn_limits]).T
+    return bool(np.all((controls >= low - SLACK) & (controls <= high + SLACK)))
+
+
+def _in_bounds(scenario: Scenario, trajectory: Floats) -> bool:
+    position = trajectory[:, 1:3]
+    low, high = scenario.bounds[[0, 2]], scenario.bounds[[1, 3]]
+    return bool(np.all((position >= low - SLACK) & (position <= high + SLACK)))
+
+
+def _check(controls: Floats, durations: Floats) -> None:
+    if controls.ndim != 2 or controls.shape[1] != 2:
+        raise ScenarioError(f"controls have shape {controls.shape}; expected (n, 2), v and omega")
+    if not np.all(np.isfinite(controls)) or not np.all(np.isfinite(durations)):
+        raise ScenarioError("controls or their durations hold NaN or infinity; expected finite numbers")
+    if np.any(durations < 0.0):
+        raise ScenarioError(f"the shortest duration is {durations.min():g} s; expected at least 0")

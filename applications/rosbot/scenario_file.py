@@ -1,0 +1,182 @@
+"""Scenario files of format `rosbot-scenario/1`: JSON, read strictly, every complaint one sentence."""
+
+import json
+import math
+import re
+from collections import Counter
+from pathlib import Path
+from types import MappingProxyType
+from typing import Literal
+
+import msgspec
+import numpy as np
+
+from applications.rosbot.scenario import Scenario
+from gpsynth.errors import ScenarioError
+
+FORMAT = "rosbot-scenario/1"
+LARGEST_FILE = 4_000_000  # bytes
+CHOICES = MappingProxyType(
+    {"format": FORMAT, "model": "unicycle", "type": "circle", "applies_to": "robot_centre"}
+)  # fields with one possible text
+
+
+class _Strict(msgspec.Struct, forbid_unknown_fields=True):
+    pass
+
+
+class _Limits(_Strict):
+    v: tuple[float, float]
+    omega: tuple[float, float]
+
+
+class _Footprint(_Strict):
+    type: Literal["circle"]
+    radius: float
+
+
+class _Robot(_Strict):
+    footprint: _Footprint
+    name: str = "rosbot"
+
+
+class _Bounds(_Strict):
+    x: tuple[float, float]
+    y: tuple[float, float]
+    applies_to: Literal["robot_centre"] = "robot_centre"
+
+
+class _Tolerance(_Strict):
+    position: float
+    heading: float
+
+
+class _Circle(_Strict):
+    type: Literal["circle"]
+    x: float
+    y: float
+    r: float
+    vx: float = 0.0
+    vy: float = 0.0
+
+
+class _Document(_Strict):
+    format: Literal["rosbot-scenario/1"]
+    limits: _Limits
+    robot: _Robot
+    bounds: _Bounds
+    start: tuple[float, float, float]
+    goal: tuple[float, float, float]
+    goal_tolerance: _Tolerance
+    time_limit: float
+    obstacles: list[_Circle]
+    name: str = ""
+    family: str = ""
+    note: str = ""
+    model: Literal["unicycle"] = "unicycle"
+    expect_feasible: bool | None = None
+
+
+def read_scenario(path: str | Path) -> Scenario:
+    """The scenario in a file; ScenarioError names the file, the field and the value that is wrong."""
+    try:
+        return parse_scenario(_text(Path(path)), name=Path(path).stem)
+    except ScenarioError as error:
+        raise ScenarioError(f"{path}: {error}") from None
+
+
+def parse_scenario(text: str | bytes, *, name: str = "") -> Scenario:
+    """The scenario in a JSON text, called `name` if the text does not name it."""
+    data = _json(text)
+    _check_finite(data, "")
+    try:
+        document = msgspec.convert(data, _Document)
+    except msgspec.ValidationError as error:
+        raise ScenarioError(_sentence(str(error), data)) from None
+    return _scenario(document, name)
+
+
+def _scenario(document: _Document, name: str) -> Scenario:
+    return Scenario(
+        start=np.array(document.start),
+        goal=np.array(document.goal),
+        speed_limits=document.limits.v,
+        turn_limits=document.limits.omega,
+        bounds=np.array([*document.bounds.x, *document.bounds.y]),
+        circles=np.array([(c.x, c.y, c.vx, c.vy, c.r) for c in document.obstacles]).reshape(-1, 5),
+        radius=document.robot.footprint.radius,
+        position_tolerance=document.goal_tolerance.position,
+        heading_tolerance=document.goal_tolerance.heading,
+        time_limit=document.time_limit,
+        name=document.name or name,
+        note=document.note,
+        expect_feasible=document.expect_feasible,
+    )
+
+
+def _text(path: Path) -> bytes:
+    try:
+        with path.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except OSError as error:
+        raise ScenarioError(f"cannot be read: {error.strerror}") from None
+    if len(content) > LARGEST_FILE:
+        raise ScenarioError(f"is larger than {LARGEST_FILE} bytes, too large for a scenario")
+    return content
+
+
+def _json(text: str | bytes) -> object:
+    try:
+        return json.loads(text, object_pairs_hook=_without_duplicates)
+    except RecursionError:
+        raise ScenarioError("is nested too deeply for a scenario") from None
+    except ValueError as error:
+        raise ScenarioError(f"is not JSON: {error}") from None
+
+
+def _without_duplicates(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    unique = dict(pairs)
+    if len(unique) < len(pairs):
+        name = Counter(name for name, _ in pairs).most_common(1)[0][0]
+        raise ScenarioError(f"field {_short(name)} stands twice in one object")
+    return unique
+
+
+def _check_finite(data: object, place: str) -> None:
+    if isinstance(data, float) and not math.isfinite(data):
+        raise ScenarioError(f"{place} is {data}; expected a finite number")
+    if isinstance(data, dict):
+        for name, value in data.items():
+            _check_finite(value, _joined(place, name))
+    if isinstance(data, list):
+        for index, value in enumerate(data):
+            _check_finite(value, f"{place}[{index}]")
+
+
+def _sentence(complaint: str, data: object) -> str:
+    """msgspec's complaint with the value it is about, e.g. `limits.v[0] is "fast"; expected float, got str`."""
+    reason, _, place = complaint.partition(" - at `$")
+    place = place.rstrip("`").lstrip(".")
+    field = re.search(r"(unknown|missing required) field `(.*)`", reason)
+    value = data
+    for name, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", place):
+        if isinstance(value, dict):
+            value = value[name]
+        elif isinstance(value, list):
+            value = value[int(index)]
+    if field and field[1] == "unknown" and isinstance(value, dict):
+        return f"{_joined(place, field[2])} is {_short(value[field[2]])}; the format has no such field"
+    if field:
+        return f"{_joined(place, field[2])} is missing"
+    expected = CHOICES.get(place.rpartition(".")[2])
+    reason = f"expected {expected}" if expected else reason[:1].lower() + reason[1:].replace("`", "")
+    return f"{place or 'the document'} is {_short(value)}; {reason}"
+
+
+def _joined(place: str, name: str) -> str:
+    return f"{place}.{name}" if place else name
+
+
+def _short(value: object) -> str:
+    text = json.dumps(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,113 @@
+"""Stage 1 for the ROSbot: the problem, the search, and the law that ships with the application."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from applications.rosbot.model import Pose, features, reached, unicycle
+from gpsynth.arrays import Floats
+from gpsynth.encodings.cartesian import CartesianEncoding
+from gpsynth.encodings.network_operator import NetworkOperatorEncoding
+from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.errors import EncodingError
+from gpsynth.law import Law
+from gpsynth.optimizers import Progress
+from gpsynth.plant import Plant
+from gpsynth.problem import Method, Problem
+from gpsynth.seeds import stream
+from gpsynth.structure_search import SearchState
+from gpsynth.synthesis import SynthesisResult, synthesize
+from gpsynth.tracing import where, wrap_angle
+
+OPERATIONS = (
+    *("add", "sub", "mul", "div_protected", "min", "max", "abs", "square", "signed_sqrt"),
+    *("tanh", "sin", "cos", "atan", "atan2"),
+)
+POSITION, HEADING = 0.05, 0.1  # m, rad: tolerance of arrival
+SEARCH_BUDGET = 30_000  # parameter vectors
+_LAW = Path(__file__).with_name("law.json")
+_ROUGH, _TUNING, _UNSEEN = 101, 102, 103  # streams of the starts
+
+
+def default_law() -> Law:
+    """The law that ships with the application; `python -m applications.rosbot synthesize` shows where it comes from."""
+    return Law.load(_LAW)
+
+
+def poses(rng: np.random.Generator, count: int, box: float = 2.0) -> Floats:
+    """Random poses (count, 3): x and y within ±box m, any heading."""
+    heading = rng.uniform(-np.pi, np.pi, (count, 1))
+    return np.concatenate([rng.uniform(-box, box, (count, 2)), heading], axis=1)
+
+
+def stabilization(
+    starts: Floats, *, period: float = 0.05, method: Method = "rk4", plant: Plant | None = None
+) -> Problem:
+    """Bring the robot from `starts` (S, 3) to the origin with heading 0 in least time.
+
+    Running cost is the time; a run that has not arrived at the horizon (s) pays for what is missing.
+    """
+    return Problem(
+        plant or unicycle(),
+        starts,
+        goal=(0.0, 0.0, 0.0),
+        tolerance=(POSITION, POSITION, HEADING),
+        horizon=30.0,
+        period=period,
+        method=method,
+        features=features,
+        reached=reached(POSITION, HEADING),
+        terminal=_missing,
+    )
+
+
+def synthesize_stabilizer(
+    *,
+    seed: int = 1,
+    budget: int = SEARCH_BUDGET,
+    encoding: Literal["tree", "cartesian", "network-operator"] = "tree",
+    threads: int = 2,
+    progress: bool = False,
+    callback: Callable[[Progress[SearchState[Any]]], bool | None] | None = None,
+) -> SynthesisResult:
+    """Find the stabilizer from scratch.
+
+    Searched on 64 starts at 0.1 s, tuned on 64 others at 0.05 s, scored on 256 more at 0.05 s and 0.005 s.
+    """
+    problem = stabilization(poses(stream(seed, _TUNING), 64))
+    rough = stabilization(poses(stream(seed, _ROUGH), 64), period=0.1, method="heun")
+    unseen = poses(stream(seed, _UNSEEN), 256, box=2.5)
+    chosen = _encoding(encoding, problem)
+    return synthesize(
+        *(problem, chosen),
+        seed=seed,
+        budget=budget,
+        tuning=300,
+        rough=rough,
+        trials=(stabilization(unseen), stabilization(unseen, period=0.005)),
+        threads=threads,
+        progress=progress,
+        callback=callback,
+    )
+
+
+def _missing(x: Pose, goal: Pose) -> Any:
+    """What a run pays that ends away from the goal, in s: about the time that mending it would take, and 10 more."""
+    distance = np.hypot(goal.x - x.x, goal.y - x.y)
+    turn = np.abs(wrap_angle(goal.theta - x.theta))
+    return where((distance <= POSITION) & (turn <= HEADING), 0.0, 10.0 + 5.0 * distance + 3.0 * turn)
+
+
+def _encoding(name: str, problem: Problem) -> Any:
+    inputs, outputs = problem.features.names, tuple(problem.plant.control_names)
+    space = ParameterSpace(8, -10.0, 10.0)
+    if name == "tree":
+        return TreeEncoding(inputs, outputs, OPERATIONS, space, max_size=20)
+    if name == "cartesian":
+        return CartesianEncoding(inputs, outputs, OPERATIONS, space)
+    if name == "network-operator":
+        return NetworkOperatorEncoding(inputs, outputs, space=ParameterSpace(len(inputs), -10.0, 10.0))
+    raise EncodingError(f"encoding must be tree, cartesian or network-operator, not {name!r}")

@@ -1,0 +1,78 @@
+"""The two stages as a person runs them: progress shown and logged, results in a run folder."""
+
+from pathlib import Path
+
+import numpy as np
+
+from applications.rosbot.model import STATES
+from applications.rosbot.plan_file import write_plan
+from applications.rosbot.planner import Effort, PlanReport, plan_scenario
+from applications.rosbot.scenario_file import read_scenario
+from applications.rosbot.show import redraw, scenario_beside
+from applications.rosbot.stabilizer import SEARCH_BUDGET, stabilization, synthesize_stabilizer
+from gpsynth.cli import EncodingName, load_law, recorder, status, write_result
+from gpsynth.errors import LawError
+from gpsynth.files import write_bytes
+from gpsynth.law import Law
+from gpsynth.record import Run
+from gpsynth.synthesis import SynthesisResult
+
+CONTROLS = ("v", "omega")
+
+
+def run_synthesis(
+    run: Run, *, seed: int, budget: int | None = None, encoding: EncodingName = "tree", threads: int = 1
+) -> SynthesisResult:
+    """Stage 1 into a run folder: the law in every form, the front and the log; the best so far is there all along."""
+    problem = stabilization(np.zeros((1, 3)))
+    result = synthesize_stabilizer(
+        seed=seed,
+        budget=budget or SEARCH_BUDGET,
+        encoding=encoding,
+        threads=threads,
+        progress=True,
+        callback=recorder(run, problem),
+    )
+    write_result(result, run)
+    return result
+
+
+def run_plan(
+    run: Run,
+    scenario_file: Path,
+    law: Law,
+    *,
+    plan_file: str = "plan.json",
+    seed: int,
+    effort: Effort = Effort(),
+    threads: int = 1,
+) -> Path:
+    """Stage 2 into a run folder: the plan, its picture and a copy of its scenario; the log holds each improvement."""
+    scenario, source = read_scenario(scenario_file), scenario_file.read_bytes()
+    with status(f"planning {scenario.name}"):
+        report = plan_scenario(scenario, [law], seed=seed, effort=effort, threads=threads)
+    _log(run, f"plan {scenario.name}", report)
+    path = run.folder / plan_file
+    write_bytes(scenario_beside(path), source)
+    write_plan(report, path)
+    redraw(path)
+    return path
+
+
+def load_steering_law(path: Path) -> Law:
+    """The law in a file, if it is one that scenarios can use; raises FileError or LawError."""
+    law = load_law(path)
+    names = law.plant.state_names, law.plant.control_names
+    if names != (tuple(STATES), CONTROLS):
+        states, controls = map(", ".join, names)
+        raise LawError(
+            f"{path} brings {states} to a target by {controls}; "
+            f"a scenario needs {', '.join(STATES)} and {', '.join(CONTROLS)}"
+        )
+    return law
+
+
+def _log(run: Run, stage: str, report: PlanReport) -> None:
+    """A line for each improvement: the cost of a plan is its arrival time (s)."""
+    for number, (evaluations, arrival_time) in enumerate(report.history, start=1):
+        run.log(stage, generation=number, evaluations=evaluations, best_cost=arrival_time)

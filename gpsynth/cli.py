@@ -1,0 +1,289 @@
+"""The command `gpsynth`: synthesize a law for the plant in a Python file, export a law, say what is in one."""
+
+import os
+import runpy
+import sys
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import click
+
+from gpsynth import __version__
+from gpsynth.errors import FileError, GpsynthError, LawError, ProblemError
+
+if TYPE_CHECKING:
+    from gpsynth.encodings.protocol import Encoding
+    from gpsynth.law import Law
+    from gpsynth.optimizers import Progress
+    from gpsynth.problem import Problem
+    from gpsynth.record import Run
+    from gpsynth.structure_search import SearchState
+    from gpsynth.synthesis import FrontEntry, SynthesisResult
+
+EncodingName = Literal["tree", "cartesian", "network-operator"]
+ENCODINGS: tuple[EncodingName, ...] = get_args(EncodingName)
+FORMATS = ("json", "text", "latex", "c", "python")
+FRONT_FORMAT = "gpsynth-front/1"
+LOADING = "loading; the first time, the kernels are compiled"
+INTERRUPTED = 130  # what a shell expects after Ctrl-C
+
+seed_option = click.option(
+    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Same seed, same result."
+)
+threads_option = click.option(
+    "--threads",
+    type=click.IntRange(min=1),
+    default=os.cpu_count() or 1,
+    show_default="all cores",
+    help="They change the time, not the result.",
+)
+law_argument = click.argument("law_file", metavar="LAW.json", type=click.Path(path_type=Path))
+
+
+def run(command: click.Command, arguments: Sequence[str] | None = None, *, name: str) -> int:
+    """Run a command line, by default the process's, and give its exit code.
+
+    What a user got wrong is one sentence on stderr and 2; Ctrl-C is 130.
+    """
+    try:
+        return int(command.main(args=arguments, prog_name=name, standalone_mode=False) or 0)
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except GpsynthError as error:
+        click.echo(f"error: {error}", err=True)
+        return 2
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("interrupted", err=True)
+        return INTERRUPTED
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The entry point `gpsynth`."""
+    return run(cli, arguments, name="gpsynth")
+
+
+@click.group()
+@click.version_option(__version__, prog_name="gpsynth")
+def cli() -> None:
+    """Genetic programming finds a stabilizer u = g(x, x*) as a readable formula."""
+
+
+@cli.command()
+@click.argument("plant_file", metavar="PLANT.py", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), help="Run folder. [default: runs/PLANT]")
+@click.option("--budget", type=click.IntRange(min=1), default=20_000, show_default=True, help="Evaluations.")
+@click.option(
+    "--encoding", "encoding_name", type=click.Choice(ENCODINGS), help="[default: the file's, or tree]"
+)
+@seed_option
+@threads_option
+def synthesize(
+    plant_file: Path,
+    out: Path | None,
+    budget: int,
+    encoding_name: EncodingName | None,
+    seed: int,
+    threads: int,
+) -> None:
+    """Synthesize a law for the plant in PLANT.py, from scratch.
+
+    PLANT.py is a Python file that defines `problem`, a gpsynth.Problem, and may define `encoding`. It is code and is
+    executed: run only files you trust.
+    """
+    with status(LOADING):
+        from gpsynth import synthesis
+    problem, own = read_plant_file(plant_file)
+    encoding = (
+        own if own is not None and encoding_name is None else named_encoding(encoding_name or "tree", problem)
+    )
+    folder = begin(out or Path("runs") / plant_file.stem, seed)
+    result = synthesis.synthesize(
+        problem,
+        encoding,
+        seed=seed,
+        budget=budget,
+        threads=threads,
+        progress=True,
+        callback=recorder(folder, problem),
+    )
+    write_result(result, folder)
+    click.echo(result.table())
+    click.echo(f"the law of least cost, its exports and the front are in {folder.folder}")
+
+
+@cli.command()
+@law_argument
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for the files.")
+@click.option("--name", default="law", show_default=True, help="Of the files and of the C function.")
+@click.option(
+    "--format", "formats", type=click.Choice(FORMATS), multiple=True, help="Repeatable. [default: all]"
+)
+def export(law_file: Path, out: Path, name: str, formats: tuple[str, ...]) -> None:
+    """Write a law as JSON, text, LaTeX, C99 and Python."""
+    for path in export_law(load_law(law_file), out, name=name, formats=formats):
+        click.echo(path)
+
+
+@cli.command()
+@law_argument
+def info(law_file: Path) -> None:
+    """Say what is in a law: formulas, limits, complexity, hash."""
+    from gpsynth.law import FORMAT
+    from gpsynth.record import versions
+
+    law = load_law(law_file)
+    plant = law.plant
+    states = ", ".join(f"{state} ({unit})" for state, unit in plant.states.items())
+    click.echo(f"plant       {plant.name}: {states}")
+    for control, (unit, low, high) in plant.controls.items():
+        click.echo(f"limits      {low:g} <= {control} <= {high:g} {unit}")
+    click.echo(f"complexity  {law.complexity} instructions, {len(law.parameters)} parameters")
+    click.echo(f"hash        {law.hash}")
+    click.echo(f"format      {FORMAT}")
+    click.echo(
+        f"read with   {', '.join(f'{package} {text}' for package, text in versions(__version__).items())}"
+    )
+    click.echo("\n".join(["", *law.formulas()]))
+
+
+@contextmanager
+def status(text: str) -> Iterator[None]:
+    """A spinner with a text where stderr is a terminal, else nothing."""
+    from rich.console import Console
+
+    with Console(stderr=True).status(text):
+        yield
+
+
+def begin(folder: Path, seed: int) -> "Run":
+    """A run of this command line in a folder; raises FileError if it cannot be written to."""
+    from gpsynth import record
+
+    return record.begin(folder, sys.argv, seed=seed, release=__version__)
+
+
+def load_law(path: Path) -> "Law":
+    """The law in a file; raises FileError or LawError."""
+    from gpsynth.law import Law
+
+    return Law.load(path)
+
+
+def export_law(law: "Law", folder: Path, *, name: str = "law", formats: Sequence[str] = ()) -> list[Path]:
+    """Write a law into `folder` in all formats, or in those given."""
+    from gpsynth import export as exports
+    from gpsynth.files import json_text, make_folder, write_text
+
+    if not formats:
+        return exports.write(law, folder, name)
+    source, header = exports.to_c(law, name)  # also the check of the name
+    contents = {
+        "json": {".json": json_text(law.to_dict())},
+        "text": {".txt": exports.to_text(law, name)},
+        "latex": {".tex": exports.to_document(law, name)},
+        "c": {".c": source, ".h": header},
+        "python": {".py": exports.to_python(law, name)},
+    }
+    place = make_folder(folder)
+    texts = {
+        place / f"{name}{end}": text for key in dict.fromkeys(formats) for end, text in contents[key].items()
+    }
+    for path, text in texts.items():
+        write_text(path, text)
+    return list(texts)
+
+
+def read_plant_file(path: Path) -> tuple["Problem", "Encoding[Any] | None"]:
+    """Execute a Python file and take its `problem` and, if it has one, its `encoding`.
+
+    Raises FileError if there is no such file or it fails, and what is wrong with the plant or problem under its own
+    name, with the file and line in front.
+    """
+    from gpsynth.problem import Problem
+
+    if not path.is_file():
+        raise FileError(f"{path} {'is not a file' if path.exists() else 'does not exist'}")
+    try:
+        names = runpy.run_path(str(path))
+    except GpsynthError as error:
+        text = str(error)  # of tracing, which names a line itself
+        raise type(error)(text if text.startswith(str(path)) else f"{_place(path, error)}: {text}") from None
+    except (Exception, SystemExit) as error:  # noqa: BLE001 a plant file is code and may raise anything
+        raise FileError(f"{_place(path, error)}: {type(error).__name__}: {error}") from None
+    problem = names.get("problem")
+    if not isinstance(problem, Problem):
+        found = (
+            f"defines it as {type(problem).__name__}"
+            if "problem" in names
+            else "defines nothing of that name"
+        )
+        raise ProblemError(f"{path} must define `problem`, a gpsynth.Problem, but {found}")
+    return problem, names.get("encoding")
+
+
+def named_encoding(name: EncodingName, problem: "Problem") -> "Encoding[Any]":
+    """An encoding for the problem's features and controls, with operations of general use."""
+    from gpsynth.encodings.cartesian import CartesianEncoding
+    from gpsynth.encodings.network_operator import NetworkOperatorEncoding
+    from gpsynth.encodings.parameters import ParameterSpace
+    from gpsynth.encodings.tree import TreeEncoding
+
+    inputs, outputs = problem.features.names, problem.plant.control_names
+    operations = ("add", "sub", "mul", "div_protected", "sin", "cos", "tanh", "sqrt_protected", "min", "max")
+    space = ParameterSpace(count=8)
+    if name == "network-operator":
+        return NetworkOperatorEncoding(inputs, outputs, space=space)
+    if name == "cartesian":
+        return CartesianEncoding(inputs, outputs, operations, space)
+    return TreeEncoding(inputs, outputs, operations, space)
+
+
+def recorder(folder: "Run", problem: "Problem") -> Callable[["Progress[SearchState[Any]]"], None]:
+    """A callback of `synthesize` that logs each generation and keeps the best law so far in law.json."""
+    from gpsynth.law import Law
+
+    def record(progress: "Progress[SearchState[Any]]") -> None:
+        evaluations, cost = progress.history[-1] if progress.history else (0, float("inf"))
+        folder.log(
+            "synthesis", generation=progress.generation, evaluations=progress.evaluations, best_cost=cost
+        )
+        if evaluations == progress.evaluations:
+            best = progress.state.population[0]
+            Law(problem.plant, problem.features, best.program, best.values).save(folder.folder / "law.json")
+
+    return record
+
+
+def write_result(result: "SynthesisResult", folder: "Run") -> None:
+    """Write the law of least cost in every form and the front; raises LawError if nothing was found."""
+    from gpsynth.files import write_json
+
+    if not result.front:
+        raise LawError(f"no law with a finite cost was found in {result.evaluations} evaluations")
+    export_law(result.law, folder.folder)
+    front = [_described(entry) for entry in result.front]
+    write_json(folder.folder / "front.json", {"format": FRONT_FORMAT, "laws": front})
+
+
+def _described(entry: "FrontEntry") -> dict[str, Any]:
+    return {
+        "complexity": entry.complexity,
+        "cost": entry.cost,
+        "reached": entry.reached,
+        "median_time": entry.median_time if entry.reached > 0.0 else None,  # s
+        "law": entry.law.to_dict(),
+    }
+
+
+def _place(path: Path, error: BaseException) -> str:
+    """The file and, if the error passed through it, the line."""
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        return f"{path}, line {error.lineno}"
+    lines = [
+        frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
+    ]
+    return f"{path}, line {lines[-1]}" if lines else str(path)

@@ -1,0 +1,63 @@
+"""How a plan is searched: its free numbers, the weights of its cost, and the swarm."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from gpsynth.errors import ProblemError
+
+Clear = Literal["path", "points"]
+Method = Literal["clerc", "seed", "cmaes"]
+
+
+@dataclass(frozen=True)
+class PlanSettings:
+    """Settings of `plan`; the weights and their letters are those of Shmalko & Yamshanov, eq. 17."""
+
+    points: int = 6  # equilibrium points before the goal, which comes last
+    dwell: tuple[float, float] | None = (0.0, 4.0)  # s, range of each; None: all equal, T+ / (points + 1)
+    obstacles: Clear = "path"  # what must be clear of them: all of the path, or the points alone
+    alpha: float = 10.0  # weight of the error at the end
+    beta: float = 0.25  # weight of the time
+    gamma: float = 5.0  # weight of the obstacles
+    margin: float = 0.004  # m, clearance that counts as none
+    optimizer: Method = "clerc"  # two swarms, "seed" being the paper's, or CMA-ES
+    particles: int = 64
+    iterations: int = 15  # in a round
+    rounds: int = 10  # T+ is tightened between them
+    spread: float = 0.05  # first step of CMA-ES, as a fraction of the range
+    patience: float = 1.5  # rollouts end after so many T+, and a second
+    reach: float = 0.0  # distance from its point at which the next one is due at once; 0: dwell times alone
+
+    def __post_init__(self) -> None:
+        for name in ("points", "particles", "iterations", "rounds"):
+            if getattr(self, name) < 1:
+                raise ProblemError(
+                    f"{name} of a plan is {getattr(self, name)}; expected a whole number from 1 on"
+                )
+        if self.dwell is not None and not 0.0 <= self.dwell[0] < self.dwell[1] < float("inf"):
+            raise ProblemError(
+                f"dwell is {self.dwell}; expected two times with 0 <= shortest < longest, or None"
+            )
+
+    @classmethod
+    def paper(cls, points: int = 5, *, particles: int = 100, rounds: int = 20) -> "PlanSettings":
+        """As printed: equal dwell times, obstacles count where a point lies in one, inertia 1.0 and c1 = c2 = 0.65.
+
+        A point that is reached makes way for the next one; how near that is, swarm size and iterations are not
+        printed: those here are ours.
+        """
+        return cls(
+            points=points,
+            dwell=None,
+            obstacles="points",
+            margin=0.0,
+            optimizer="seed",
+            particles=particles,
+            rounds=rounds,
+            patience=1.0,
+            reach=0.05,
+        )
+
+    def on_path(self) -> "PlanSettings":
+        """The same with the path itself kept clear of obstacles."""
+        return replace(self, obstacles="path")

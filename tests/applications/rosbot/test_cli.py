@@ -1,0 +1,262 @@
+"""The command `python -m applications.rosbot`: plans anybody can replay, exit codes, and one sentence for bad input."""
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from applications.rosbot.__main__ import cli, main
+from applications.rosbot.model import unicycle, wheel_coupled
+from applications.rosbot.polar_law import polar_law
+from gpsynth.law import Law
+from gpsynth.record import read_progress
+
+SCENARIO = {
+    "format": "rosbot-scenario/1",
+    "limits": {"v": [-0.5, 0.5], "omega": [-0.5, 0.5]},
+    "robot": {"footprint": {"type": "circle", "radius": 0.1}},
+    "bounds": {"x": [-3.0, 3.0], "y": [-3.0, 3.0]},
+    "start": [0.0, 0.0, 0.0],
+    "goal": [1.0, 0.5, 0.0],
+    "goal_tolerance": {"position": 0.05, "heading": 0.1},
+    "time_limit": 20.0,
+    "obstacles": [],
+}
+CIRCLE = {"type": "circle", "x": 0.5, "y": -0.5, "r": 0.2}
+RING = [
+    {"type": "circle", "x": 1.0 + 0.6 * math.cos(a), "y": 0.5 + 0.6 * math.sin(a), "r": 0.2}
+    for a in np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False)
+]
+
+
+@pytest.fixture
+def scenario_file(tmp_path):
+    def write(text=None, **changes):
+        path = tmp_path / "room.json"
+        path.write_text(json.dumps({**SCENARIO, **changes}) if text is None else text)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def law_file(tmp_path):
+    path = tmp_path / "some_law.json"
+    polar_law(unicycle()).save(path)
+    return path
+
+
+def _run(*arguments):
+    return main([str(argument) for argument in arguments])
+
+
+def _fails(capsys, *arguments, sentence):
+    """The command ends with 2 and one line on stderr that holds all of `sentence`."""
+    assert _run(*arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("error: ")
+    assert captured.err.count("\n") == 1
+    for words in sentence:
+        assert words in captured.err
+
+
+def _arcs(start, controls, period, pieces=20):
+    """Poses (N, 3) of a unicycle under held controls, by circular arcs: the exact solution."""
+    poses = [start]
+    for v, omega in controls:
+        for _ in range(pieces):
+            (x, y, theta), step = poses[-1], period / pieces
+            chord = v * step * np.sinc(0.5 * omega * step / np.pi)
+            middle = theta + 0.5 * omega * step
+            poses.append((x + chord * math.cos(middle), y + chord * math.sin(middle), theta + omega * step))
+    return np.array(poses)
+
+
+def _replays(plan, scenario):
+    """The controls of a plan, driven by arcs, do what the plan says."""
+    controls, period = np.array(plan["controls"]), plan["control_period"]
+    (v_low, v_high), (omega_low, omega_high) = scenario["limits"]["v"], scenario["limits"]["omega"]
+    assert np.all((controls >= [v_low, omega_low]) & (controls <= [v_high, omega_high]))
+    poses = _arcs(tuple(scenario["start"]), controls, period)
+    radius = scenario["robot"]["footprint"]["radius"]
+    gaps = [
+        np.hypot(*(poses[:, :2] - (c["x"], c["y"])).T).min() - c["r"] - radius for c in scenario["obstacles"]
+    ]
+    if gaps:
+        # the arcs are sampled every 2.5 ms, in which the robot moves 1.25 mm
+        assert plan["clearance"] == pytest.approx(min(gaps), abs=1.5e-3)
+        assert min(gaps) >= 0.0
+    error = poses - np.array(scenario["goal"])
+    tolerance = scenario["goal_tolerance"]
+    arrived = (np.hypot(error[:, 0], error[:, 1]) <= tolerance["position"]) & (
+        np.abs(np.remainder(error[:, 2] + np.pi, 2.0 * np.pi) - np.pi) <= tolerance["heading"]
+    )
+    assert arrived.any()
+    first = int(np.argmax(arrived)) * period / 20
+    assert plan["arrival_time"] == pytest.approx(first, abs=period)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("obstacles", [[], [CIRCLE]], ids=["empty", "circle"])
+def test_a_plan_can_be_replayed(capsys, scenario_file, law_file, tmp_path, obstacles):
+    out = tmp_path / "out"
+    scenario = {**SCENARIO, "obstacles": obstacles}
+    path = scenario_file(obstacles=obstacles)
+    assert _run("plan", path, "--out", out, "--law", law_file, "--seed", "3") == 0
+    plan = json.loads((out / "plan.json").read_text())
+    assert plan["status"] == "planned"
+    assert plan["planning_time"] > 0.0
+    assert plan["trajectory"][0] == [0.0, *SCENARIO["start"]]
+    _replays(plan, scenario)
+    assert f"{plan['arrival_time']:.2f}" in capsys.readouterr().out
+    assert (out / "scenario.json").read_bytes() == path.read_bytes()
+    assert (out / "plan.png").read_bytes().startswith(b"\x89PNG")
+    assert read_progress(out)[-1]["stage"] == "plan room"
+
+
+@pytest.mark.slow
+def test_the_same_seed_gives_the_same_controls(scenario_file, law_file, tmp_path):
+    plans = []
+    for number in (1, 2):
+        out = tmp_path / f"out{number}"
+        _run("plan", scenario_file(), "--out", out, "--law", law_file, "--seed", "5", "--threads", number)
+        plans.append(json.loads((out / "plan.json").read_text()))
+    assert plans[0]["controls"] == plans[1]["controls"]
+    assert plans[0]["schedule"] == plans[1]["schedule"]
+
+
+@pytest.mark.slow
+def test_a_plan_needs_no_law_of_one_s_own(scenario_file, tmp_path):
+    assert _run("plan", scenario_file(), "--out", tmp_path / "out") == 0
+    _replays(json.loads((tmp_path / "out" / "plan.json").read_text()), SCENARIO)
+
+
+def test_an_unreachable_goal_is_3_with_the_reason(capsys, scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "plan.png").touch()  # of an earlier plan
+    assert _run("plan", scenario_file(obstacles=RING), "--out", out, "--law", law_file) == 3
+    plan = json.loads((out / "plan.json").read_text())
+    assert plan["status"] == "unreachable"
+    assert plan["reason"]
+    assert "unreachable" in capsys.readouterr().out
+    assert not (out / "plan.png").exists()
+    assert _run("show", out) == 0
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"text": "not JSON"}, ["JSON"]),
+        ({"text": ""}, ["JSON"]),
+        ({"text": json.dumps([SCENARIO])}, ["the document"]),
+        ({"speed": 1.0}, ["speed", "no such field"]),
+        ({"limits": {"v": [math.nan, 0.5], "omega": [-0.5, 0.5]}}, ["limits.v[0]", "nan", "finite"]),
+        ({"limits": {"v": [0.5, -0.5], "omega": [-0.5, 0.5]}}, ["limits of v", "less than"]),
+        ({"limits": {"v": [-0.5, 0.5]}}, ["limits.omega", "missing"]),
+        ({"obstacles": [{**CIRCLE, "x": 0.0, "y": 0.1}]}, ["start", "obstacles[0]"]),
+        ({"start": [9.0, 0.0, 0.0]}, ["start", "outside the bounds"]),
+        ({"format": "rosbot-scenario/2"}, ["format", "rosbot-scenario/1"]),
+        ({"time_limit": 0.0}, ["time_limit"]),
+    ],
+)
+def test_a_wrong_scenario_is_one_sentence_and_leaves_nothing(
+    capsys, scenario_file, tmp_path, changes, sentence
+):
+    out = tmp_path / "out"
+    _fails(capsys, "plan", scenario_file(**changes), "--out", out, sentence=["room.json", *sentence])
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("name", ["nowhere.json", "."])
+def test_a_scenario_that_is_no_file_is_one_sentence(capsys, tmp_path, name):
+    _fails(
+        capsys, "plan", tmp_path / name, "--out", tmp_path / "out", sentence=[str(tmp_path), "cannot be read"]
+    )
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_damaged_law_is_one_sentence_and_leaves_nothing(capsys, scenario_file, law_file, tmp_path):
+    law_file.write_text(law_file.read_text().replace("0x1.", "0x0.", 1))
+    arguments = ("plan", scenario_file(), "--out", tmp_path / "out", "--law", law_file)
+    _fails(capsys, *arguments, sentence=["some_law.json", "hash"])
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_law_for_another_plant_is_one_sentence_and_leaves_nothing(capsys, scenario_file, tmp_path):
+    polar_law(wheel_coupled()).save(tmp_path / "wheels.json")
+    arguments = ("plan", scenario_file(), "--out", tmp_path / "out", "--law", tmp_path / "wheels.json")
+    _fails(capsys, *arguments, sentence=["wheels.json", "u1, u2", "v, omega"])
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_that_cannot_be_made_is_one_sentence(capsys, scenario_file, law_file, tmp_path):
+    (tmp_path / "file").touch()
+    arguments = ("plan", scenario_file(), "--out", tmp_path / "file" / "out", "--law", law_file)
+    _fails(capsys, *arguments, sentence=["cannot be made"])
+
+
+@pytest.mark.slow
+def test_show_draws_the_picture_anew(capsys, scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    _run("plan", scenario_file(), "--out", out, "--law", law_file)
+    for place in (out, out / "plan.json"):
+        (out / "plan.png").unlink(missing_ok=True)
+        capsys.readouterr()
+        assert _run("show", place) == 0
+        assert "planned" in capsys.readouterr().out
+        assert (out / "plan.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [("{", "is not JSON"), ("{}", "is not a plan"), ('{"status": 1}', "is not a plan")],
+)
+def test_a_damaged_plan_is_one_sentence(capsys, tmp_path, content, sentence):
+    (tmp_path / "plan.json").write_text(content)
+    _fails(capsys, "show", tmp_path, sentence=["plan.json", sentence])
+
+
+def test_a_folder_without_a_run_is_one_sentence(capsys, tmp_path):
+    _fails(capsys, "show", tmp_path, sentence=["neither a plan.json nor a law.json"])
+    _fails(capsys, "show", tmp_path / "nowhere.json", sentence=["does not exist"])
+
+
+@pytest.mark.slow
+def test_the_demo_leaves_a_whole_run_folder(capsys, tmp_path):
+    assert _run("demo", "--short", "--out", tmp_path, "--threads", "2") == 0
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names >= {"law.json", "law.tex", "law.c", "law.h", "plan.json", "plan.png", "progress.jsonl"}
+    assert names >= {"plan_empty.json", "plan_empty.png", "scenario.json", "scenario_empty.json", "run.json"}
+    assert not any(name.startswith(".") for name in names)
+    text = capsys.readouterr().out
+    assert Law.load(tmp_path / "law.json").formulas()[-1] in text
+    for suffix in ("", "_empty"):
+        plan = json.loads((tmp_path / f"plan{suffix}.json").read_text())
+        _replays(plan, json.loads((tmp_path / f"scenario{suffix}.json").read_text()))
+        assert f"{plan['arrival_time']:.2f}" in text
+    stages = {entry["stage"] for entry in read_progress(tmp_path)}
+    assert stages == {"synthesis", "plan paper", "plan paper_empty"}
+
+
+@pytest.mark.parametrize("command", [[], *([name] for name in cli.commands)])
+def test_every_command_explains_itself(capsys, command):
+    assert main([*command, "--help"]) == 0
+    assert capsys.readouterr().out.startswith(" ".join(["Usage: python -m applications.rosbot", *command]))
+
+
+def test_help_lists_the_commands_without_loading_what_they_need():
+    code = (
+        "import sys; from applications.rosbot.__main__ import main; code = main(['--help']); "
+        "sys.exit(code or any(name in sys.modules for name in ('numba', 'sympy', 'matplotlib', 'deap', 'numpy')))"
+    )
+    root = Path(__file__).parents[3]
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=root)
+    assert done.returncode == 0
+    for name in ("demo", "synthesize", "plan", "export", "show"):
+        assert name in done.stdout

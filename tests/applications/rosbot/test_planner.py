@@ -1,0 +1,183 @@
+"""Plans for scenarios, judged by the replay that shares nothing with the planner."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from applications.rosbot.guides import direct_guides, guides_along
+from applications.rosbot.model import unicycle, wheel_coupled
+from applications.rosbot.plan_file import plan_document, write_plan
+from applications.rosbot.planner import PERIOD, Effort, plan_scenario, problem_of
+from applications.rosbot.polar_law import HOT, SATURATING, polar_law
+from applications.rosbot.replay import replay
+from applications.rosbot.routes import routes
+from applications.rosbot.scenario import Scenario
+from applications.rosbot.seeds import along, nearby, schedules_along
+from gpsynth.errors import ScenarioError
+from gpsynth.planning import PlanSettings
+from gpsynth.seeds import stream
+
+QUICK = Effort(
+    points=5,
+    scouts=PlanSettings(particles=16, iterations=8, rounds=2),
+    chasers=PlanSettings(particles=24, iterations=10, rounds=2),
+    refiners=PlanSettings(particles=24, iterations=10, rounds=2),
+    chased=2,
+    refined=1,
+)
+
+
+def law():
+    return polar_law(unicycle(), SATURATING)
+
+
+def scene(**changes) -> Scenario:
+    """A disc in the straight way to a goal 3 m ahead."""
+    return Scenario(
+        **{"start": [0.0, 0.0, 0.0], "goal": [3.0, 0.0, 0.0], "circles": [[1.5, 0.05, 0.0, 0.0, 0.3]]}
+        | changes
+    )
+
+
+@pytest.fixture(name="report", scope="module")
+def _report():
+    return plan_scenario(scene(), [law()], seed=1, effort=QUICK)
+
+
+def test_a_plan_is_confirmed_by_the_independent_replay(report):
+    check = replay(scene(), report.plan.trajectory.u, PERIOD)
+    assert report.status == "planned"
+    assert check.solves
+    assert check.arrival_time == report.replay.arrival_time
+    assert check.clearance >= 0.003  # the margin is 4 mm, and a period moves the arcs by less than the rest
+    assert 0.0 <= len(report.plan.trajectory.u) * PERIOD - check.arrival_time <= 2.0 * PERIOD
+
+
+def test_a_plan_is_near_its_bound(report):
+    assert 1.0 <= report.ratio < 1.1
+
+
+def test_the_history_ends_at_the_plan(report):
+    assert report.history[-1][1] == report.plan.arrival_time
+    assert report.history[-1][0] <= report.evaluations
+
+
+def test_the_same_seed_gives_the_same_plan_for_any_number_of_threads(report):
+    again = plan_scenario(scene(), [law()], seed=1, effort=QUICK, threads=2)
+    assert np.array_equal(again.plan.trajectory.u, report.plan.trajectory.u)
+    assert again.evaluations == report.evaluations
+
+
+def test_public_scenarios_are_solved_or_unreachable(public):
+    report = plan_scenario(public, [law()], seed=0, effort=QUICK)
+    assert report.status == ("planned" if public.expect_feasible else "unreachable")
+    if report.replay is not None:
+        assert report.replay.solves
+    else:
+        assert "shut the goal off" in report.reason
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+@pytest.mark.parametrize("speed_limits", [(-0.1, 0.5), (0.0, 0.5), (-0.5, 0.2)])
+def test_unequal_limits_are_kept(speed_limits, direction):
+    scenario = scene(goal=[3.0 * direction, 1.0, 0.5], speed_limits=speed_limits, turn_limits=(-1.0, 0.8))
+    report = plan_scenario(scenario, [law()], seed=0, effort=QUICK)
+    assert report.replay.solves
+    v, omega = report.plan.trajectory.u.T
+    assert speed_limits[0] <= v.min() <= v.max() <= speed_limits[1]
+    assert -1.0 <= omega.min() <= omega.max() <= 0.8
+
+
+def test_a_moving_obstacle_is_met_where_it_then_is():
+    crossing = scene(circles=[[1.5, -1.5, 0.0, 0.5, 0.3]])  # in the way when the robot would be there
+    report = plan_scenario(crossing, [law()], seed=0, effort=QUICK)
+    assert report.replay.solves
+    assert report.replay.clearance < 1.0
+
+
+def test_an_unreachable_goal_is_told_from_one_that_was_not_found():
+    ring = [[3.0 + 0.6 * np.cos(a), 0.6 * np.sin(a), 0.0, 0.0, 0.2] for a in np.linspace(0.0, 6.2, 12)]
+    unreachable = plan_scenario(scene(circles=ring), [law()], effort=QUICK)
+    too_late = plan_scenario(scene(time_limit=3.0), [law()], effort=replace(QUICK, attempts=1))
+    assert (unreachable.status, unreachable.evaluations) == ("unreachable", 0)
+    assert too_late.status == "not_found"
+    assert "no collision-free plan within 3 s" in too_late.reason
+
+
+def test_a_start_at_the_goal_has_arrived():
+    report = plan_scenario(scene(goal=[0.0, 0.0, 0.0]), [law()], effort=QUICK)
+    assert report.replay.arrival_time == 0.0
+
+
+def test_the_better_of_two_laws_is_taken():
+    laws = [law(), polar_law(unicycle(), HOT)]
+    both = plan_scenario(scene(), laws, seed=1, effort=QUICK)
+    assert both.law.program in {each.program for each in laws}
+    assert both.replay.solves
+
+
+def test_a_law_must_steer_the_robot():
+    with pytest.raises(ScenarioError, match="the law steers u1, u2; a scenario needs v, omega"):
+        plan_scenario(scene(), [polar_law(wheel_coupled())], effort=QUICK)
+    with pytest.raises(ScenarioError, match="a plan needs at least one law"):
+        plan_scenario(scene(), [], effort=QUICK)
+
+
+def test_the_goal_is_aimed_at_a_little_within_its_tolerance():
+    problem = problem_of(scene(), law())
+    edge = np.array([[3.0 - 0.0495, 0.0, 0.0, *scene().goal], [3.0 - 0.0485, 0.0, 0.0, *scene().goal]])
+    assert np.array_equal(problem.reached(edge)[:, 0] <= 0.0, [False, True])
+
+
+def test_a_plan_file_holds_what_a_replay_needs(report, tmp_path):
+    write_plan(report, tmp_path / "plan.json")
+    document = json.loads((tmp_path / "plan.json").read_text())
+    check = replay(scene(), np.array(document["controls"]), document["control_period"])
+    assert document["status"] == "planned"
+    assert check.arrival_time == document["arrival_time"] == document["trajectory"][-1][0]
+    assert check.clearance == document["clearance"]
+    assert document["trajectory"][0] == [0.0, 0.0, 0.0, 0.0]
+    assert len(document["trajectory"]) in (len(document["controls"]), len(document["controls"]) + 1)
+    assert np.shape(document["schedule"]["points"]) == (len(document["schedule"]["dwell"]), 3)
+
+
+def test_a_plan_file_without_a_plan_gives_the_reason():
+    unreachable = plan_scenario(scene(circles=[[3.0, 0.0, 0.0, 0.0, 0.3]]), [law()], effort=QUICK)
+    document = plan_document(unreachable)
+    assert document["status"] == "unreachable"
+    assert "the goal is in collision" in document["reason"]
+    assert (document["arrival_time"], document["controls"], document["schedule"]) == (None, [], None)
+
+
+def test_guides_lead_from_start_to_goal_and_bring_cusps():
+    trap = scene(circles=[[0.8, y, 0.0, 0.0, 0.2] for y in (-0.6, -0.3, 0.0, 0.3, 0.6)])
+    guides = guides_along(trap, routes(trap)[0]) + direct_guides(trap)
+    for guide in guides:
+        assert np.allclose(guide.poses[[0, -1], :2], [[0.0, 0.0], [3.0, 0.0]], atol=1e-6)
+    assert any(len(guide.cusps) for guide in guides)
+    assert guides[0].duration >= 2.9 / 0.5
+
+
+def test_guides_do_not_drive_where_the_limits_forbid():
+    forwards = scene(speed_limits=(0.0, 0.5))
+    assert all(np.all(guide.senses > 0.0) for guide in guides_along(forwards, routes(forwards)[0]))
+
+
+def test_a_schedule_along_a_guide_takes_its_time_and_points_at_its_cusps():
+    parking = scene(goal=[0.0, 1.0, 0.0], circles=np.zeros((0, 5)))
+    guide = direct_guides(parking)[0]
+    schedule = along(guide, 6)
+    assert set(np.round(guide.cusps, 9)) <= set(np.round(np.cumsum(schedule.dwell), 9))
+    assert 0.6 * guide.duration < schedule.dwell.sum() < guide.duration
+
+
+def test_schedules_repeat_the_guides_with_noise():
+    guides = direct_guides(scene())[:2]
+    schedules = schedules_along(guides, 4, 5, stream(1))
+    assert len(schedules) == 5
+    assert np.array_equal(schedules[1].points, along(guides[1], 4).points)
+    assert not np.array_equal(schedules[2].points, schedules[0].points)
+    assert np.array_equal(nearby(schedules[0], 3, 0.1, stream(2))[0].points, schedules[0].points)
+    assert schedules_along([], 4, 5, stream(1)) == []
