@@ -35,8 +35,9 @@ bench: $(READY) ## times, each beside a reference measured in the same run
 docs: $(READY) ## the documentation, into docs/_build/html
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html
 
-golden: $(READY) ## write the golden files under tests/golden anew
+golden: $(READY) ## write the golden files and the generated pages anew
 	$(BIN)/python -m tests.golden.renew
+	$(BIN)/python -m docs.generate
 
 cov: $(READY) ## line and branch coverage, kernels as plain Python
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -m "not slow" --cov --cov-report=term-missing $(PYTEST_FLAGS)

@@ -1,11 +1,11 @@
 """Sphinx settings: Markdown pages (MyST), furo theme, API pages from docstrings."""
 
-from importlib.metadata import version as installed_version
+from gpsynth import __version__
 
 project = "gpsynth"
 author = "gpsynth contributors"
 copyright = "2026, gpsynth contributors"
-version = release = installed_version("gpsynth")
+version = release = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 exclude_patterns = ["_build"]

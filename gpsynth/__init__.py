@@ -14,12 +14,13 @@ if TYPE_CHECKING:
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
+    from gpsynth.planning import Plan, PlanSettings, plan
     from gpsynth.plant import Plant
     from gpsynth.problem import Obstacles, Problem
     from gpsynth.program import Program
     from gpsynth.schedule import Schedule
     from gpsynth.seeds import stream
-    from gpsynth.simulate import Trajectory, simulate
+    from gpsynth.simulation import Trajectory, simulate
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
     from gpsynth.tracing import trace, where, wrap_angle
@@ -43,14 +44,17 @@ _HOME = {
     "PSO": "optimizers",
     "DifferentialEvolution": "optimizers",
     "minimize": "optimizers",
+    "Plan": "planning",
+    "PlanSettings": "planning",
+    "plan": "planning",
     "Plant": "plant",
     "Obstacles": "problem",
     "Problem": "problem",
     "Program": "program",
     "Schedule": "schedule",
     "stream": "seeds",
-    "Trajectory": "simulate",
-    "simulate": "simulate",
+    "Trajectory": "simulation",
+    "simulate": "simulation",
     "StructureSearch": "structure_search",
     "SynthesisResult": "synthesis",
     "synthesize": "synthesis",
@@ -59,7 +63,43 @@ _HOME = {
     "wrap_angle": "tracing",
 }  # public name -> module; loaded on first use, so that `import gpsynth` does not wait for numba
 
-__all__ = ["GpsynthError", "__version__", *_HOME]
+__all__ = [
+    "CMAES",
+    "NSGA2",
+    "PSO",
+    "Builder",
+    "CartesianEncoding",
+    "DifferentialEvolution",
+    "Evaluator",
+    "GpsynthError",
+    "Law",
+    "NetworkOperatorEncoding",
+    "Obstacles",
+    "ParameterSpace",
+    "Plan",
+    "PlanSettings",
+    "Plant",
+    "Problem",
+    "Program",
+    "Rollouts",
+    "Schedule",
+    "StructureSearch",
+    "SynthesisResult",
+    "Trajectory",
+    "TreeEncoding",
+    "__version__",
+    "bind",
+    "compose",
+    "minimize",
+    "plan",
+    "simplify",
+    "simulate",
+    "stream",
+    "synthesize",
+    "trace",
+    "where",
+    "wrap_angle",
+]
 
 
 def __getattr__(name: str) -> Any:

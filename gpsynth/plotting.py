@@ -14,7 +14,7 @@ from gpsynth.errors import GpsynthError
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from gpsynth.simulate import Trajectory
+    from gpsynth.simulation import Trajectory
 
 # Okabe & Ito 2008: told apart by people of any color vision.
 BLUE, ORANGE, GREEN, RED, SKY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9"

@@ -45,12 +45,12 @@ class SynthesisResult:
 
     @property
     def best(self) -> FrontEntry:
-        """The entry of least cost."""
-        return self.front[-1]
+        """The entry of least cost among those that reach the goal from most starts."""
+        return min(self.front, key=lambda entry: (-entry.reached, entry.cost))
 
     @property
     def law(self) -> Law:
-        """The law of least cost."""
+        """The law of the best entry."""
         return self.best.law
 
     def table(self) -> str:

@@ -11,7 +11,7 @@ from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
 from gpsynth.program import Program
 from gpsynth.schedule import Schedule
-from gpsynth.simulate import simulate
+from gpsynth.simulation import simulate
 from gpsynth.tracing import trace
 
 

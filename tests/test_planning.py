@@ -15,7 +15,7 @@ from gpsynth.planning.rounds import rescored
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
 from gpsynth.schedule import Schedule
-from gpsynth.simulate import simulate
+from gpsynth.simulation import simulate
 from gpsynth.tracing import trace
 
 SMALL = PlanSettings(points=2, particles=32, iterations=10, rounds=6)

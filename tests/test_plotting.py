@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from gpsynth.errors import GpsynthError
 from gpsynth.plotting import plot_front, plot_history, plot_trajectory, quantity
-from gpsynth.simulate import Trajectory
+from gpsynth.simulation import Trajectory
 from gpsynth.synthesis import FrontEntry
 
 STATES = {"x": "m", "theta": "rad"}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.errors import OptimizerError

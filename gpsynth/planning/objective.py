@@ -112,7 +112,7 @@ class Objective:
         """Arrival times (N,) between the control periods, so that the cost has no steps of one period.
 
         The arrival measure is taken as linear in the last period, whose beginning is found backwards along the rates
-        at its end. Where points are left as soon as they are reached, the target then is not known, and the tick counts.
+        at its end. Where points are left as soon as they are reached, the target is not known, and the tick counts.
         """
         times = rollouts.arrival[:, 0].copy()
         rows = np.flatnonzero(np.isfinite(times) & (times > 0.0))

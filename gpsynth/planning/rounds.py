@@ -30,7 +30,7 @@ from gpsynth.planning.objective import Objective
 from gpsynth.planning.settings import PlanSettings
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule
-from gpsynth.simulate import Trajectory, simulate
+from gpsynth.simulation import Trajectory, simulate
 
 History = tuple[tuple[int, float], ...]
 

@@ -9,7 +9,7 @@ from gpsynth.law import Law
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
 from gpsynth.schedule import Schedule
-from gpsynth.simulate import simulate
+from gpsynth.simulation import simulate
 from gpsynth.tracing import trace
 
 

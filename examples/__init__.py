@@ -1,0 +1,1 @@
+"""One plant each, from the equations of motion to the exported law."""

@@ -1,0 +1,110 @@
+"""`python -m tests.bench.choices [NAME ...]`: the figures behind decisions of docs/decisions, each choice beside what
+it was chosen over."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from statistics import median
+from types import MappingProxyType
+from unittest.mock import patch
+
+import numpy as np
+
+from applications.rosbot.experiments import experiment
+from applications.rosbot.scenario_file import read_scenario
+from applications.rosbot.stabilizer import OPERATIONS, poses, stabilization
+from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.evaluate import Evaluator, instructions
+from gpsynth.kernels.pack import pack
+from gpsynth.optimizers import minimize
+from gpsynth.planning import plan
+from gpsynth.seeds import stream
+from gpsynth.structure_search import StructureSearch
+from gpsynth.synthesis import batch_cost
+from tests.bench.setting import setting
+
+SCENARIO = Path(__file__).parents[2] / "applications" / "rosbot" / "scenarios" / "paper.json"
+SEEDS = range(1, 11)
+
+
+def rounds() -> Iterator[str]:
+    """Arrival times on the paper's scenario, physical limits: T+ tightened in rounds, and the other readings."""
+    case = experiment(read_scenario(SCENARIO), "physical")
+    settings = case.settings
+    frozen = replace(settings, iterations=settings.iterations * settings.rounds, rounds=1)
+    for name, chosen, stale in (
+        ("rounds, bests scored anew", settings, False),
+        ("rounds, bests keep their old cost", settings, True),
+        ("T+ stays at 18 s", frozen, False),
+    ):
+        with _stale_bests() if stale else _nothing():
+            found = [plan(case.problem, case.law, chosen, seed=seed, threads=2) for seed in SEEDS]
+        times = sorted(each.arrival_time if each.is_free else np.inf for each in found)
+        yield f"{name:36} median {median(times):6.3f} s, best {times[0]:6.3f} s, worst {times[-1]:6.3f} s"
+
+
+def search() -> Iterator[str]:
+    """Cost after 5000 evaluations of stage 1 on 16 starts: the search as it is, and without some of its parts."""
+    problem = stabilization(poses(stream(1, 7), 16), period=0.1, method="euler")
+    space = ParameterSpace(8, -10.0, 10.0)
+    encoding = TreeEncoding(
+        problem.features.names, problem.plant.control_names, OPERATIONS, space, max_size=20
+    )
+    whole = StructureSearch(encoding)
+    for name, chosen in (
+        ("lexicase and CMA-ES", whole),
+        ("without CMA-ES", replace(whole, tuned=0)),
+        ("without lexicase", replace(whole, lexicase=0.0)),
+        ("without either", replace(whole, tuned=0, lexicase=0.0)),
+    ):
+        cost = batch_cost(Evaluator(problem), 2)
+        costs = sorted(minimize(cost, chosen, seed=seed, budget=5000).cost for seed in SEEDS)
+        yield f"{name:36} median cost {median(costs):6.2f} s, best {costs[0]:6.2f} s, worst {costs[-1]:6.2f} s"
+
+
+def packing() -> Iterator[str]:
+    """What a law costs before its first rollout, beside 64 rollouts of it."""
+    case = setting()
+    evaluator = Evaluator(case.problem)
+    laws = [instructions(law) for law in case.laws]
+    none = np.empty((1, 0))
+    packed = _microseconds(lambda: [pack(evaluator.frame, law, 0) for law in laws]) / len(laws)
+    rolled = _microseconds(lambda: [evaluator.of_program(law, none) for law in case.laws]) / len(laws)
+    yield f"{'packing a law of 20 operations':36} {packed:8.1f} us"
+    yield f"{'64 rollouts of it, 5 s each':36} {rolled:8.1f} us"
+
+
+@contextmanager
+def _nothing() -> Iterator[None]:
+    yield
+
+
+@contextmanager
+def _stale_bests() -> Iterator[None]:
+    def unchanged(found, objective):
+        return replace(found.progress, history=())
+
+    with patch("gpsynth.planning.rounds.rescored", unchanged):
+        yield
+
+
+def _microseconds(work: Callable[[], object], repeats: int = 15) -> float:
+    times = []
+    for _ in range(repeats):
+        began = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - began)
+    return 1e6 * median(times)
+
+
+CHOICES = MappingProxyType({"rounds": rounds, "search": search, "packing": packing})
+
+if __name__ == "__main__":
+    for name in sys.argv[1:] or CHOICES:
+        print(name)
+        for line in CHOICES[name]():
+            print(f"  {line}", flush=True)
