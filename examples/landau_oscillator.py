@@ -9,6 +9,7 @@ b = 6.735 a1 - 6.080 a2 with J = 1.297; here the law is evaluated every 0.05 s a
 """
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -17,18 +18,18 @@ from gpsynth.cli import run
 from gpsynth.export import write
 
 
-def oscillator(x, u):
+def oscillator(x: Any, u: Any) -> tuple[Any, Any]:
     """Amplitude 1 attracts every orbit but the one at rest."""
     growth = 1.0 - x.a1**2 - x.a2**2
     return growth * x.a1 - x.a2, growth * x.a2 + x.a1 + u.b
 
 
-def effort(x, u, goal):
+def effort(x: Any, u: Any, goal: Any) -> Any:
     """Cost per second."""
     return x.a1**2 + x.a2**2 + 0.01 * u.b**2
 
 
-def oscillation(period, horizon):
+def oscillation(period: float, horizon: float) -> gs.Problem:
     """From four points of the limit cycle to rest."""
     starts = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]
     return gs.Problem(

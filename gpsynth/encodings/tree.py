@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from math import exp
 from threading import Lock
 from typing import cast
 
@@ -179,16 +180,47 @@ class TreeEncoding:
         return len(tree) <= self.max_size and tree.height <= self.max_height
 
     def _changed(self, tree: gp.PrimitiveTree) -> tuple[gp.PrimitiveTree]:
-        """DEAP's mutations; a whole new subtree is the commonest, the others are small steps."""
+        """DEAP's mutations and one of ours; a whole new subtree is the commonest, the others are small steps."""
         draw = random.random()  # noqa: S311 the generator is ours while it is lent
-        if draw < 0.15 and self.operations:
+        if draw < 0.3 and self._extends:
+            return (self._extended(tree),)
+        if draw < 0.4 and self.operations:
             return cast(tuple[gp.PrimitiveTree], gp.mutInsert(tree, self.primitives))
-        if draw < 0.3:
-            return cast(tuple[gp.PrimitiveTree], gp.mutShrink(tree))
         if draw < 0.5:
+            return cast(tuple[gp.PrimitiveTree], gp.mutShrink(tree))
+        if draw < 0.65:
             return cast(tuple[gp.PrimitiveTree], gp.mutNodeReplacement(tree, self.primitives))
         grow = partial(gp.genHalfAndHalf, min_=self.grown_heights[0], max_=self.grown_heights[1])
         return cast(tuple[gp.PrimitiveTree], gp.mutUniform(tree, expr=grow, pset=self.primitives))
+
+    @cached_property
+    def _extends(self) -> bool:
+        return self.space.count > 0 and {"add", "mul"} <= set(self.operations)
+
+    def _extended(self, tree: gp.PrimitiveTree) -> gp.PrimitiveTree:
+        """A node plus a weighted term, times a number near 1 or plus a number near 0.
+
+        What the tree did it still does, nearly; tuning the new number shows what the extension is worth.
+        """
+        place = tree.searchSubtree(random.randrange(len(tree)))  # noqa: S311 as above
+        add, times = self.primitives.mapping["add"], self.primitives.mapping["mul"]
+        draw = random.random()  # noqa: S311
+        if draw < 0.5:
+            weight = random.choice((-1.0, 1.0)) * exp(random.uniform(-3.0, 1.5))  # noqa: S311
+            tree[place] = [add, *tree[place], times, self._number(weight), *self._term()]
+        elif draw < 0.85:
+            tree[place] = [times, *tree[place], self._number(random.gauss(1.0, 0.1))]
+        else:
+            tree[place] = [add, *tree[place], self._number(random.gauss(0.0, 0.1))]
+        return tree
+
+    def _term(self) -> list[gp.Primitive | gp.Terminal]:
+        if random.random() < 0.5:  # noqa: S311
+            return [self.primitives.mapping[random.choice(self.primitives.arguments)]]  # noqa: S311
+        return cast(list[gp.Primitive | gp.Terminal], gp.genHalfAndHalf(self.primitives, *self.grown_heights))
+
+    def _number(self, value: float) -> gp.Terminal:
+        return gp.Terminal(self.space.nearest(value), False, object)
 
     def _grown(self) -> gp.PrimitiveTree:
         for _ in range(_TRIES):

@@ -82,6 +82,15 @@ def test_children_stay_within_the_limits():
     assert numbers == {0, 1, 2}
 
 
+def test_mutation_often_adds_a_number_that_hardly_changes_the_formula():
+    encoding = TreeEncoding(("x", "y"), ("u",), ("add", "mul"), ParameterSpace(2, rate=0.0))
+    parent, rng = TreeGenome(((0,),), ()), stream(5)
+    children = [encoding.mutate(parent, rng) for _ in range(300)]
+    values = [encoding.decode(child)(np.array([[3.0, 1.0]]), child.values)[0, 0] for child in children]
+    near = [value for value in values if 0.0 < abs(value - 3.0) < 1.0]
+    assert len(near) > 40  # DEAP's mutations alone give fewer than 10
+
+
 def test_encodings_with_different_bounds_do_not_share_their_numbers():
     low, high = (TreeEncoding(("x",), ("u",), PLAIN, ParameterSpace(9, a, a + 1)) for a in (0.0, 5.0))
     for encoding in (low, high, low):

@@ -34,8 +34,8 @@ def test_the_shipped_law_keeps_the_limits_and_rests_at_the_target() -> None:
 
 @pytest.mark.slow
 def test_a_law_found_from_scratch_reaches_the_goal_from_every_start() -> None:
-    """A sixth of the budget of the main job, which needs a minute; the same bar."""
-    result = synthesize_stabilizer(seed=2, budget=5_000)
+    """A third of the budget of the main job; the same bar."""
+    result = synthesize_stabilizer(seed=1, budget=10_000)
     for period in (0.05, 0.005):
         assert np.all(np.isfinite(arrivals(result.law, 200, period=period)))
     assert result.front[0].complexity < result.best.complexity
