@@ -20,12 +20,12 @@ OPERATIONS = ("add", "sub", "mul", "sin", "tanh")
 
 
 def fresh_plant_row() -> tuple[str, float]:
-    """Label, and the median (s) over plants that differ in their equations; the first only warms the process up."""
+    """Label, and the median processor time (s) of plants with different equations, after one that warms up."""
     times = []
     for plant in range(REPEATS + 1):
-        begin = time.perf_counter()
+        begin = time.process_time()
         formulas = _first_generation(plant)
-        times.append(time.perf_counter() - begin)
+        times.append(time.process_time() - begin)
     label = f"fresh plant to first generation ({formulas} formulas, {STARTS} starts)"
     return label, statistics.median(times[1:])
 
