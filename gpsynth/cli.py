@@ -7,7 +7,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 
 import click
 
@@ -28,11 +28,21 @@ ENCODINGS: tuple[EncodingName, ...] = get_args(EncodingName)
 FORMATS = ("json", "text", "latex", "c", "python")
 FRONT_FORMAT = "gpsynth-front/1"
 LOADING = "loading; the first time, the kernels are compiled"
+Command = TypeVar("Command", bound=Callable[..., Any])
 INTERRUPTED = 130  # what a shell expects after Ctrl-C
 
-seed_option = click.option(
-    "--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Same seed, same result."
-)
+
+def seed_option(default: int = 1) -> Callable[[Command], Command]:
+    """The option --seed."""
+    return click.option(
+        "--seed",
+        type=click.IntRange(min=0),
+        default=default,
+        show_default=True,
+        help="Same seed, same result.",
+    )
+
+
 threads_option = click.option(
     "--threads",
     type=click.IntRange(min=1),
@@ -79,7 +89,7 @@ def cli() -> None:
 @click.option(
     "--encoding", "encoding_name", type=click.Choice(ENCODINGS), help="[default: the file's, or tree]"
 )
-@seed_option
+@seed_option()
 @threads_option
 def synthesize(
     plant_file: Path,

@@ -191,7 +191,7 @@ class StructureSearch(Generic[G]):
         draw = rng.random()
         if draw < self.simple:
             return state.front[int(rng.integers(len(state.front)))]
-        if draw < self.simple + self.lexicase:
+        if draw < self.simple + self.lexicase and len(state.population[0].cases) > 1:
             return state.population[state.specialists.draw(rng)]
         return state.population[int(rng.integers(len(state.population), size=self.tournament).min())]
 

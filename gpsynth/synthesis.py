@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Any, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from gpsynth.arrays import Floats
 from gpsynth.encodings.protocol import Encoding
@@ -21,6 +22,7 @@ from gpsynth.structure_search import Candidate, Individual, SearchState, Structu
 G = TypeVar("G")
 
 SEARCH, TUNING = 1, 2  # stages of the random streams
+MERIT = 1e-3  # share of the cost that a larger law of the front must save
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +32,7 @@ class FrontEntry:
     law: Law
     cost: float  # mean over the starts, of the trials too, of running and terminal cost
     complexity: int  # instructions of the formula
-    reached: float  # share of the starts from which the goal is reached
+    reached: float  # share of the starts that are at the goal at the end
     median_time: float  # s, of the arrivals
 
 
@@ -45,7 +47,7 @@ class SynthesisResult:
 
     @property
     def best(self) -> FrontEntry:
-        """The entry of least cost among those that reach the goal from most starts."""
+        """The entry of least cost among those that end at the goal from most starts."""
         return min(self.front, key=lambda entry: (-entry.reached, entry.cost))
 
     @property
@@ -159,7 +161,7 @@ def _entry(evaluators: Sequence[Evaluator], program: Program, values: Floats) ->
     problem = evaluators[0].problem
     rollouts = [evaluator.of_program(program, values[np.newaxis]) for evaluator in evaluators]
     arrival = np.concatenate([each.arrival[0] for each in rollouts])
-    reached = np.isfinite(arrival)
+    reached = np.concatenate([_there(*pair) for pair in zip(evaluators, rollouts, strict=True)])
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
         cost=float(np.concatenate([costs_of(each)[0] for each in rollouts]).mean()),
@@ -169,9 +171,20 @@ def _entry(evaluators: Sequence[Evaluator], program: Program, values: Floats) ->
     )
 
 
+def _there(evaluator: Evaluator, rollouts: Rollouts) -> npt.NDArray[np.bool_]:
+    """Which rollouts (S,) of one candidate end within the tolerance, having stopped there or not."""
+    ends = np.hstack([rollouts.final[0], evaluator.goals])
+    within: npt.NDArray[np.bool_] = evaluator.problem.arrival(ends)[:, 0] <= 0.0
+    there: npt.NDArray[np.bool_] = within & np.isfinite(rollouts.arrival[0])
+    return there
+
+
 def _front(entries: Sequence[FrontEntry]) -> tuple[FrontEntry, ...]:
+    """Each entry better than all simpler ones, and by enough to be worth its size."""
     front: list[FrontEntry] = []
     for entry in sorted(entries, key=lambda each: (each.complexity, each.cost)):
-        if np.isfinite(entry.cost) and (not front or entry.cost < front[-1].cost):
+        if np.isfinite(entry.cost) and (
+            not front or entry.cost < front[-1].cost - MERIT * abs(front[-1].cost)
+        ):
             front.append(entry)
     return tuple(front)

@@ -100,7 +100,7 @@ def _draw_waypoints(axes: "Axes", scenario: Scenario, waypoints: Floats) -> None
     """The equilibrium points with their headings, numbered in the order of their turns."""
     if not len(waypoints):
         return
-    axes.plot(*waypoints[:, :2].T, "o", color=BLUE, markersize=4.0, label="waypoints", zorder=6)
+    axes.plot(*waypoints[:, :2].T, "o", color=BLUE, markersize=4.0, label="equilibrium points", zorder=6)
     for number, pose in enumerate(waypoints, start=1):
         _draw_heading(axes, pose, 1.5 * scenario.radius, BLUE)
         behind = (

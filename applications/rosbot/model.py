@@ -11,6 +11,7 @@ from gpsynth.tracing import where, wrap_angle
 
 # A state or target while tracing: a vector of symbols, named as in STATES.
 Pose = Any
+NEAR = 0.05  # m
 STATES = MappingProxyType({"x": "m", "y": "m", "theta": "rad"})
 
 
@@ -46,20 +47,23 @@ def features(x: Pose, target: Pose) -> dict[str, Any]:
     Errors in the body frame (forward, left) rather than in the world, so one formula serves every place and heading;
     distance and two angles besides, since arriving with a heading means weighing the line to the target against the
     robot's axis (bearing) and against the target's heading (approach). The robot drives both ways equally well, so
-    bearing is the angle of a line, within ±pi/2, and a target straight behind is as well aimed at as one ahead.
+    bearing is the angle of a line, within ±pi/2, and a target straight behind is as well aimed at as one ahead. Within
+    NEAR of the target that line means nothing and bearing fades, while the heading error alone counts (heading).
     """
     dx, dy = target.x - x.x, target.y - x.y
     forward = np.cos(x.theta) * dx + np.sin(x.theta) * dy
     left = np.cos(x.theta) * dy - np.sin(x.theta) * dx
     turn = wrap_angle(target.theta - x.theta)
-    bearing = np.arctan2(where(forward < 0.0, -left, left), np.abs(forward))
+    distance = np.hypot(dx, dy)
+    bearing = np.arctan2(where(forward < 0.0, -left, left), np.abs(forward) + NEAR)
     return {
         "error_x": forward,
         "error_y": left,
         "error_theta": turn,
-        "distance": np.hypot(dx, dy),
+        "distance": distance,
         "bearing": bearing,
         "approach": wrap_angle(bearing - turn),
+        "heading": turn / (1.0 + (distance / NEAR) ** 2),
     }
 
 

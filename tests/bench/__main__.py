@@ -16,6 +16,7 @@ from gpsynth.evaluate import Evaluator
 from gpsynth.program import Program
 from tests.bench.compiled import compile_setting
 from tests.bench.elementary import elementary_rows
+from tests.bench.fresh_plant import fresh_plant_row
 from tests.bench.measure import machine, median_time, pin
 from tests.bench.peers import deap_laws, roll
 from tests.bench.setting import LAWS, OPERATIONS_A_LAW, STARTS, STEPS, Setting, setting, unicycle
@@ -58,6 +59,8 @@ def main() -> None:
     print(f"\n{'ns per element':56}{'gpsynth':>12}{'numpy':>9}{'ratio':>9}")
     for name, ours, theirs in elementary_rows():
         print(f"{name:56}{ours:12.2f}{theirs:9.2f}{theirs / ours:9.2f}")
+    label, seconds = fresh_plant_row()
+    print(f"\n{label:56}{seconds:12.2f} s")
 
 
 def _compiled(case: Setting) -> Iterator[Row]:

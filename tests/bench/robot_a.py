@@ -2,6 +2,8 @@
 
 45 starts, |u| <= 10, Heun with 0.01 s and the law computed at every stage, as published; then the same laws with
 0.001 s. f0 sums time and twice the miss over the starts, f1 the misses. The law sees goal - state, nothing else.
+A run ends at a largest error of 0.1 and moves at most 0.01 in a step of 0.001 s, where every arrival leaves at
+least 0.09: f1 cannot be below 3.78 there for a law that arrives 42 times.
 """
 
 import argparse
@@ -93,7 +95,7 @@ def _row(name: str, program: gs.Program, parameters: Floats) -> str:
 def main() -> None:
     """Print one line a seed, the published law first."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3])
+    parser.add_argument("--seeds", type=int, nargs="+", default=[0, 1, 2])
     parser.add_argument("--budget", type=int, default=BUDGET)
     arguments = parser.parse_args()
     print(

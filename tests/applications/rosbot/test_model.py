@@ -37,14 +37,16 @@ def test_features_equal_complex_arithmetic():
     for pose, target in rng.uniform(-3.0, 3.0, (50, 2, 3)):
         line = complex(*(target - pose)[:2])
         ahead = line * np.exp(-1j * pose[2])
-        bearing = np.angle(ahead if ahead.real >= 0.0 else -ahead)
+        bearing = np.angle((ahead if ahead.real >= 0.0 else -ahead) + 0.05)
+        turn = np.angle(np.exp(1j * (target[2] - pose[2])))
         expected = {
             "error_x": (line * np.exp(-1j * pose[2])).real,
             "error_y": (line * np.exp(-1j * pose[2])).imag,
             "error_theta": np.angle(np.exp(1j * (target[2] - pose[2]))),
             "distance": abs(line),
             "bearing": bearing,
-            "approach": np.angle(np.exp(1j * (bearing - target[2] + pose[2]))),
+            "approach": np.angle(np.exp(1j * (bearing - turn))),
+            "heading": turn / (1.0 + abs(line) ** 2 / 0.05**2),
         }
         assert seen(pose, target) == pytest.approx(expected, abs=1e-12)
 
