@@ -7,7 +7,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeGuard, TypeVar, get_args
 
 import click
 
@@ -29,6 +29,7 @@ FORMATS = ("json", "text", "latex", "c", "python")
 FRONT_FORMAT = "gpsynth-front/1"
 LOADING = "loading; the first time, the kernels are compiled"
 Command = TypeVar("Command", bound=Callable[..., Any])
+MOST_SEED = 2**53 - 1  # the largest integer that every reader of JSON keeps
 INTERRUPTED = 130  # what a shell expects after Ctrl-C
 
 
@@ -36,7 +37,7 @@ def seed_option(default: int = 1) -> Callable[[Command], Command]:
     """The option --seed."""
     return click.option(
         "--seed",
-        type=click.IntRange(min=0),
+        type=click.IntRange(0, MOST_SEED),
         default=default,
         show_default=True,
         help="Same seed, same result.",
@@ -64,7 +65,7 @@ def run(command: click.Command, arguments: Sequence[str] | None = None, *, name:
         error.show()
         return error.exit_code
     except GpsynthError as error:
-        click.echo(f"error: {error}", err=True)
+        click.echo(f"error: {_one_line(error)}", err=True)
         return 2
     except (click.Abort, KeyboardInterrupt):
         click.echo("interrupted", err=True)
@@ -110,6 +111,7 @@ def synthesize(
     encoding = (
         own if own is not None and encoding_name is None else named_encoding(encoding_name or "tree", problem)
     )
+    synthesis.check_encoding(problem, encoding)
     folder = begin(out or Path("runs") / plant_file.stem, seed)
     result = synthesis.synthesize(
         problem,
@@ -210,8 +212,8 @@ def export_law(law: "Law", folder: Path, *, name: str = "law", formats: Sequence
 def read_plant_file(path: Path) -> tuple["Problem", "Encoding[Any] | None"]:
     """Execute a Python file and take its `problem` and, if it has one, its `encoding`.
 
-    Raises FileError if there is no such file or it fails, and what is wrong with the plant or problem under its own
-    name, with the file and line in front.
+    Raises FileError if there is no such file or it fails, ProblemError if one of the two is something else, and what is
+    wrong with the plant or problem under its own name, with the file and line in front.
     """
     from gpsynth.problem import Problem
 
@@ -223,7 +225,8 @@ def read_plant_file(path: Path) -> tuple["Problem", "Encoding[Any] | None"]:
         text = str(error)  # of tracing, which names a line itself
         raise type(error)(text if text.startswith(str(path)) else f"{_place(path, error)}: {text}") from None
     except (Exception, SystemExit) as error:  # noqa: BLE001 a plant file is code and may raise anything
-        raise FileError(f"{_place(path, error)}: {type(error).__name__}: {error}") from None
+        text = error.msg if _is_syntax_of(error, path) else str(error)
+        raise FileError(f"{_place(path, error)}: {type(error).__name__}: {text}") from None
     problem = names.get("problem")
     if not isinstance(problem, Problem):
         found = (
@@ -232,7 +235,13 @@ def read_plant_file(path: Path) -> tuple["Problem", "Encoding[Any] | None"]:
             else "defines nothing of that name"
         )
         raise ProblemError(f"{path} must define `problem`, a gpsynth.Problem, but {found}")
-    return problem, names.get("encoding")
+    encoding = names.get("encoding")
+    if encoding is not None and not _is_encoding(encoding):
+        raise ProblemError(
+            f"{path} must define `encoding`, if at all, as an encoding such as gpsynth.TreeEncoding(...), "
+            f"but defines it as {encoding!r}"
+        )
+    return problem, encoding
 
 
 def named_encoding(name: EncodingName, problem: "Problem") -> "Encoding[Any]":
@@ -291,9 +300,25 @@ def _described(entry: "FrontEntry") -> dict[str, Any]:
 
 def _place(path: Path, error: BaseException) -> str:
     """The file and, if the error passed through it, the line."""
-    if isinstance(error, SyntaxError) and error.filename == str(path):
+    if _is_syntax_of(error, path):
         return f"{path}, line {error.lineno}"
     lines = [
         frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
     ]
     return f"{path}, line {lines[-1]}" if lines else str(path)
+
+
+def _is_syntax_of(error: BaseException, path: Path) -> TypeGuard[SyntaxError]:
+    """Whether the file itself is not Python."""
+    return isinstance(error, SyntaxError) and error.filename == str(path)
+
+
+def _is_encoding(value: Any) -> bool:
+    """Whether a value is made like the protocol `Encoding`."""
+    parts = ("inputs", "outputs", "space", "random", "mutate", "crossover", "decode", "parameters")
+    return not isinstance(value, type) and all(hasattr(value, part) for part in parts)
+
+
+def _one_line(error: BaseException) -> str:
+    """What the error says, which may quote anything, without line breaks."""
+    return " ".join(filter(None, map(str.strip, str(error).splitlines())))

@@ -2,10 +2,11 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ProblemError
@@ -14,10 +15,11 @@ from gpsynth.kernels.layout import Clock, Lanes, World, sealed
 from gpsynth.kernels.pack import Frame, Instructions, Loop, frame, pack
 from gpsynth.kernels.tableaus import TABLEAUS
 from gpsynth.law import Law
+from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.program import Program
 
-_NO_POINTS, _NO_ENDS = frozen(np.empty((1, 0, 1))), frozen(np.empty((1, 0)))
+MOST_PERIODS = 10_000_000  # of one rollout
 _NO_TRACE = np.empty((0, 0, 0))
 
 
@@ -42,14 +44,15 @@ class _Plans(NamedTuple):
     reach: float = 0.0
 
 
-_NO_PLAN = _Plans(np.empty((1, 0, 1)), np.empty((1, 0)))
+_NO_PLAN = _Plans(frozen(np.empty((1, 0, 1))), frozen(np.empty((1, 0))))
 
 
 @dataclass(frozen=True)
 class Evaluator:
     """Rolls candidates out on a problem, `threads` slices of lanes at a time.
 
-    `margin` (m) is the clearance below which a path counts as exposed.
+    `margin` (m) is the clearance below which a path counts as exposed. Raises ProblemError if a setting, or what is to
+    be rolled out, does not fit.
     """
 
     problem: Problem
@@ -57,14 +60,28 @@ class Evaluator:
     block: int = 128
     margin: float = 0.0
 
+    def __post_init__(self) -> None:
+        for name in ("threads", "block"):
+            value = getattr(self, name)
+            if not isinstance(value, int | np.integer) or value < 1:
+                raise ProblemError(f"{name} must be an integer of at least 1, got {value!r}")
+        if not 0.0 <= self.margin < np.inf:
+            raise ProblemError(f"the margin must be finite and at least 0 m, got {self.margin}")
+
     def of_program(self, program: Program, parameters: Floats) -> Rollouts:
         """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p)."""
-        vectors = np.atleast_2d(np.asarray(parameters, dtype=np.float64))
-        if vectors.shape[1] != len(program.parameters):
+        problem = self.problem
+        if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
+            raise ProblemError(
+                f"the program computes {len(program.outputs)} values from {_listed(program.inputs)}; expected "
+                f"{len(problem.plant.controls)} from the features {_listed(problem.features.names)}"
+            )
+        vectors = np.atleast_2d(numbers("parameters", parameters))
+        if vectors.ndim != 2 or vectors.shape[1] != len(program.parameters):
             raise ProblemError(
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
-        return self._roll(program, vectors, _NO_PLAN, self.problem.horizon)
+        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors))
 
     def of_schedules(
         self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None, *, reach: float = 0.0
@@ -72,15 +89,35 @@ class Evaluator:
         """Rollouts (N, S) of one law under N schedules: points (N, k, n) and their dwell times (N, k) in s.
 
         With a positive `reach`, a state this near to its point (Euclidean, angles wrapped, in the units of the
-        states) goes on to the next point at once.
+        states) goes on to the next point at once. Raises ProblemError as well if the law is not for the problem's
+        plant and features.
         """
-        plans = _Plans(points, np.cumsum(dwell, axis=1), reach)
+        check_law(self.problem, law)
+        plans = self._plans(points, dwell, reach)
         horizon = self.problem.horizon if horizon is None else horizon
-        return self._roll(law.program, law.parameters[np.newaxis], plans, horizon)
+        return self._roll(law.program, law.parameters[np.newaxis], plans, horizon, len(plans.points))
 
-    def _roll(self, program: Program, vectors: Floats, plans: _Plans, horizon: float) -> Rollouts:
+    def _plans(self, points: Floats, dwell: Floats, reach: float) -> _Plans:
+        places, times = numbers("points", points), numbers("dwell times", dwell)
+        states = self.problem.starts.shape[1]
+        if places.ndim != 3 or places.shape[2] != states or times.shape != places.shape[:2]:
+            raise ProblemError(
+                f"points and dwell times have shapes {places.shape} and {times.shape}; "
+                f"expected (N, k, {states}) and (N, k)"
+            )
+        if not np.isfinite(places).all():
+            raise ProblemError("the points hold NaN or infinity; expected finite numbers")
+        if not (np.isfinite(times) & (times >= 0.0)).all():
+            raise ProblemError(
+                "the dwell times hold NaN, infinity or a negative number; expected at least 0 s"
+            )
+        return _Plans(places, np.cumsum(times, axis=1), reach)
+
+    def _roll(
+        self, program: Program, vectors: Floats, plans: _Plans, horizon: float, candidates: int
+    ) -> Rollouts:
         """One candidate a parameter vector, or a plan."""
-        starts, candidates = len(self.problem.starts), max(len(vectors), len(plans.points))
+        starts = len(self.problem.starts)
         lane = np.arange(candidates * starts, dtype=np.int32)
         picks = np.zeros((len(lane), 3), dtype=np.int32)
         picks[:, 0] = lane % starts
@@ -139,8 +176,10 @@ def roll(
     evaluator: Evaluator, program: Program, lanes: Lanes, horizon: float, trace: Floats, reach: float = 0.0
 ) -> Floats:
     """The kernel's result (L, ...) for these lanes, computed in slices of whole blocks by the evaluator's threads."""
+    if not reach >= 0.0:
+        raise ProblemError(f"the reach must be at least 0, got {reach}")
     rows, code = pack(evaluator.frame, instructions(program), len(program.parameters))
-    clock = evaluator.clock._replace(periods=round(horizon / evaluator.problem.period), reach=reach)
+    clock = evaluator.clock._replace(periods=periods_of(evaluator.problem, horizon), reach=reach)
     total, block = len(lanes.picks), evaluator.block
     states, terminals = lanes.starts.shape[1], len(code.arrival) - 1
     result = np.empty((total, rollout.TERMINAL + terminals + states))
@@ -150,12 +189,65 @@ def roll(
 
     slice_size = block * max(1, -(-total // (block * evaluator.threads)))
     slices = [(first, min(first + slice_size, total)) for first in range(0, total, slice_size)]
-    if len(slices) == 1:
-        run(*slices[0])
+    if len(slices) <= 1:
+        for ends in slices:
+            run(*ends)
     else:
         with ThreadPoolExecutor(evaluator.threads) as pool:
             list(pool.map(lambda ends: run(*ends), slices))
     return result
+
+
+def periods_of(problem: Problem, horizon: float) -> int:
+    """The control periods until the horizon (s); raises ProblemError unless that is a sensible number."""
+    if not 0.0 <= horizon <= MOST_PERIODS * problem.period:
+        raise ProblemError(
+            f"the horizon is {horizon} s; expected at least 0 and at most {MOST_PERIODS} periods of "
+            f"{problem.period} s"
+        )
+    return round(horizon / problem.period)
+
+
+def check_law(problem: Problem, law: Law) -> None:
+    """Raises ProblemError unless the law is for the problem's plant, limits included, and sees its features."""
+    if law.plant is not problem.plant or law.features is not problem.features:
+        _check_content(problem, law)
+
+
+@lru_cache(maxsize=64)
+def _check_content(problem: Problem, law: Law) -> None:
+    if law.features != problem.features:
+        raise ProblemError(
+            "the law sees other features than the problem; give the problem features=law.features"
+        )
+    if law.plant == problem.plant:
+        return
+    same_controls = law.plant.control_names == problem.plant.control_names
+    if same_controls and law.plant.with_limits(problem.plant.lower, problem.plant.upper) == problem.plant:
+        raise ProblemError(
+            f"the law is for controls in {_limits(law.plant)}, the problem for {_limits(problem.plant)}; "
+            "adapt the law by law.with_limits(problem.plant.lower, problem.plant.upper)"
+        )
+    raise ProblemError(
+        f"the law is for the plant {law.plant.name!r}, which is not the problem's {problem.plant.name!r}; "
+        "give the problem plant=law.plant"
+    )
+
+
+def numbers(what: str, values: npt.ArrayLike) -> Floats:
+    """The values as an array; raises ProblemError if they are not numbers."""
+    try:
+        return np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ProblemError(f"{what} must hold numbers in rows of equal length, got {values!r}") from None
+
+
+def _limits(plant: Plant) -> str:
+    return ", ".join(f"[{low:g}, {high:g}]" for _, low, high in plant.controls.values())
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(names) if names else "nothing"
 
 
 def instructions(program: Program) -> Instructions:
@@ -164,7 +256,7 @@ def instructions(program: Program) -> Instructions:
 
 
 def _rollouts(result: Floats, shape: tuple[int, int], terminals: int) -> Rollouts:
-    table = result.reshape(*shape, -1)
+    table = result.reshape(*shape, result.shape[1])
     first = rollout.TERMINAL
     return Rollouts(
         arrival=table[..., rollout.ARRIVAL],

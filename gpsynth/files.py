@@ -1,6 +1,7 @@
 """Files are data: JSON read strictly and with limits, everything written whole or not at all."""
 
 import contextlib
+import errno
 import json
 import math
 import os
@@ -14,7 +15,7 @@ from gpsynth.errors import FileError
 MOST_BYTES = 1_000_000
 DEEPEST = 32
 LARGEST_INTEGER = 2**53  # beyond it a double no longer holds every integer
-_SURROGATES = re.compile("[\ud800-\udfff]")
+SURROGATES = re.compile("[\ud800-\udfff]")
 
 
 def read_json(path: str | os.PathLike[str], most_bytes: int = MOST_BYTES) -> Any:
@@ -95,10 +96,17 @@ def make_folder(path: str | os.PathLike[str]) -> Path:
     return folder
 
 
+def check_readable(path: Path) -> None:
+    """Raise OSError for a pipe or device, whose reading might never end."""
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise OSError(errno.EINVAL, "it is not a regular file")
+
+
 def _read(path: Path, most_bytes: int) -> bytes:
     try:
+        check_readable(path)
         with path.open("rb") as file:
-            content = file.read(most_bytes + 1)  # and not the file's own size, which a device does not have
+            content = file.read(most_bytes + 1)  # and not its size, which may change
     except FileNotFoundError:
         raise FileError(f"{path} does not exist") from None
     except (OSError, ValueError) as error:
@@ -146,7 +154,7 @@ def _check_values(value: Any) -> None:
     """Raise RecursionError if the value is too deep, ValueError if a text in it cannot be printed."""
     level, depth = [value], 0
     while level:
-        if any(isinstance(item, str) and _SURROGATES.search(item) for item in level):
+        if any(isinstance(item, str) and SURROGATES.search(item) for item in level):
             raise ValueError("a text in it holds half of a surrogate pair")
         if depth == DEEPEST and any(isinstance(item, dict | list) for item in level):
             raise RecursionError

@@ -6,7 +6,7 @@ import numpy as np
 
 from gpsynth.arrays import Floats
 from gpsynth.errors import ProblemError
-from gpsynth.evaluate import Evaluator, roll
+from gpsynth.evaluate import Evaluator, check_law, numbers, periods_of, roll
 from gpsynth.kernels import rollout
 from gpsynth.kernels.layout import Lanes, sealed
 from gpsynth.law import Law
@@ -39,15 +39,18 @@ def simulate(
     """The closed loop of `law` from `start` (n,), by default the problem's first, until arrival or the horizon (s).
 
     The target is the problem's goal, or the points of `schedule` and then the goal; `reach` as in `of_schedules`.
-    Raises ProblemError if the start does not fit.
+    Raises ProblemError if start, schedule, horizon or reach do not fit, or the law is not for the problem's plant and
+    features.
     """
+    check_law(problem, law)
     states = len(problem.plant.state_names)
-    origin = problem.starts[0] if start is None else np.asarray(start, dtype=np.float64)
-    if origin.shape != (states,):
-        raise ProblemError(f"the start has shape {origin.shape}; expected ({states},)")
+    origin = problem.starts[0] if start is None else _start(start, states)
     horizon = problem.horizon if horizon is None else horizon
+    periods = periods_of(problem, horizon)
     points = np.empty((0, states)) if schedule is None else schedule.points
-    ends = np.empty(0) if schedule is None else np.cumsum(schedule.dwell)
+    ends = np.empty(0) if schedule is None else schedule.ends
+    if points.shape[1] != states:
+        raise ProblemError(f"the points of the schedule have shape {points.shape}; expected (k, {states})")
     lanes = Lanes(
         picks=np.zeros((1, 3), dtype=np.int32),
         starts=origin[np.newaxis],
@@ -57,7 +60,6 @@ def simulate(
         ends=np.array(ends, dtype=np.float64)[np.newaxis],
     )
     controls = len(problem.plant.control_names)
-    periods = round(horizon / problem.period)
     trace = np.empty((1, periods + 1, 2 * states + controls))
     result = roll(Evaluator(problem, block=1), law.program, sealed(lanes), horizon, trace, reach)[0]
     ticks = round(result[rollout.END] / problem.period) + 1
@@ -71,3 +73,12 @@ def simulate(
         cost=float(result[rollout.COST]),
         clearance=float(result[rollout.CLEARANCE]),
     )
+
+
+def _start(start: Floats, states: int) -> Floats:
+    origin = numbers("the start", start)
+    if origin.shape != (states,):
+        raise ProblemError(f"the start has shape {origin.shape}; expected ({states},)")
+    if not np.isfinite(origin).all():
+        raise ProblemError(f"the start holds NaN or infinity: {origin.tolist()}; expected finite numbers")
+    return origin

@@ -87,12 +87,7 @@ def synthesize(
     the same result for any number of threads. Raises ProblemError if the encoding's inputs and outputs are not the
     problem's features and controls.
     """
-    features, controls = problem.features.names, tuple(problem.plant.control_names)
-    if encoding.inputs != features or encoding.outputs != controls:
-        raise ProblemError(
-            f"the encoding maps {encoding.inputs} to {encoding.outputs}; the problem has features {features} "
-            f"and controls {controls}"
-        )
+    check_encoding(problem, encoding)
     cost = batch_cost(Evaluator(rough or problem), threads)
     strategy = search or StructureSearch(encoding)
     found = minimize(
@@ -107,6 +102,16 @@ def synthesize(
     with ThreadPoolExecutor(threads) as pool:
         entries = list(pool.map(entry, enumerate(found.state.front)))
     return SynthesisResult(_front(entries), found.evaluations, found.history, found.reason)
+
+
+def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:
+    """Raises ProblemError unless the encoding maps the problem's features to its controls."""
+    features, controls = problem.features.names, problem.plant.control_names
+    if encoding.inputs != features or encoding.outputs != controls:
+        raise ProblemError(
+            f"the encoding maps {encoding.inputs} to {encoding.outputs}; the problem has features {features} "
+            f"and controls {controls}"
+        )
 
 
 def costs_of(rollouts: Rollouts) -> Floats:

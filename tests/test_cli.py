@@ -76,6 +76,7 @@ def test_the_encoding_of_the_plant_file_is_used_unless_another_is_named(capsys, 
     own = "from gpsynth import TreeEncoding\nencoding = TreeEncoding(('wrong',), ('u',), ('add',))\n"
     path = plant_file(after=own)
     _fails(capsys, ["synthesize", path, "--out", tmp_path / "a"], "the encoding maps", "wrong")
+    assert not (tmp_path / "a").exists()
     for encoding in ENCODINGS:
         arguments = [
             "synthesize",
@@ -100,8 +101,11 @@ def test_the_encoding_of_the_plant_file_is_used_unless_another_is_named(capsys, 
         ({"dynamics": "lambda x, u: (x.w, u.u)"}, ("line 4", "w")),
         ({"after": "problem = None"}, ("must define `problem`", "NoneType")),
         ({"after": "1 / 0"}, ("line 6", "ZeroDivisionError")),
-        ({"after": "a b"}, ("line 6", "SyntaxError")),
+        ({"after": "a b"}, ("line 6: SyntaxError: invalid syntax\n",)),
         ({"after": "raise SystemExit(0)"}, ("line 6", "SystemExit")),
+        ({"after": "raise ValueError('one\\n\\n  two')"}, ("line 6", "ValueError: one two\n")),
+        ({"after": "encoding = 3"}, ("must define `encoding`", "defines it as 3")),
+        ({"after": "from gpsynth import TreeEncoding as encoding"}, ("must define `encoding`",)),
     ],
 )
 def test_a_wrong_plant_file_is_one_sentence_and_leaves_nothing(
@@ -224,6 +228,16 @@ def test_help_lists_the_commands_without_loading_what_they_need():
 def test_the_version_is_the_package_s(capsys):
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"gpsynth, version {gpsynth.__version__}\n"
+
+
+def test_a_seed_that_a_result_cannot_hold_is_refused_first(capsys, plant_file, tmp_path):
+    out = tmp_path / "run"
+    arguments = ["synthesize", str(plant_file()), "--out", str(out), "--budget", "600", "--seed"]
+    assert main([*arguments, str(2**53)]) == 2
+    assert "9007199254740992 is not in the range" in capsys.readouterr().err
+    assert not out.exists()
+    assert main([*arguments, str(2**53 - 1)]) == 0
+    assert json.loads((out / "run.json").read_text())["seed"] == 2**53 - 1
 
 
 @pytest.mark.parametrize("arguments", [["nothing"], ["info"], ["export", "law.json"], ["info", "--no"]])

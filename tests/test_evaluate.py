@@ -1,5 +1,8 @@
 """Many candidates at once: each result in its place, whatever the number of threads."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -110,3 +113,122 @@ def test_parameters_of_the_wrong_width_are_named() -> None:
     problem = _problem()
     with pytest.raises(ProblemError, match=r"parameters have shape \(4, 3\); the law has 2 parameters"):
         Evaluator(problem).of_program(_parametrized(problem), np.zeros((4, 3)))
+
+
+@pytest.mark.parametrize("parameters", [np.zeros((2, 2, 2)), [["a", "b"]], np.zeros((2, 0))])
+def test_parameters_that_are_no_vectors_are_refused(parameters: Floats) -> None:
+    problem = _problem()
+    with pytest.raises(ProblemError, match="parameters"):
+        Evaluator(problem).of_program(_parametrized(problem), parameters)
+
+
+def test_no_candidates_give_no_rollouts() -> None:
+    problem = _problem()
+    evaluator = Evaluator(problem, threads=2)
+    law = _laws(problem, np.array([[0.7, 0.4]]))[0]
+    constant = trace(lambda e: (0.0, 0.25), [("e", problem.features.names)], problem.plant.control_names)
+    for rolled in (
+        evaluator.of_program(law.program, np.empty((0, 2))),
+        evaluator.of_program(constant, np.empty((0, 0))),
+        evaluator.of_schedules(law, np.empty((0, 3, 3)), np.empty((0, 3))),
+    ):
+        assert rolled.cost.shape == (0, 5)
+        assert rolled.final.shape == (0, 5, 3)
+
+
+@pytest.mark.parametrize(
+    ("points", "dwell", "sentence"),
+    [
+        (np.zeros((2, 4, 2)), np.ones((2, 4)), "shapes (2, 4, 2) and (2, 4); expected (N, k, 3) and (N, k)"),
+        (np.zeros((4, 3)), np.ones((4,)), "shapes (4, 3) and (4,)"),
+        (np.zeros((2, 4, 3)), np.ones((1, 4)), "shapes (2, 4, 3) and (1, 4)"),
+        (np.zeros((2, 4, 3)), np.ones((2, 3)), "shapes (2, 4, 3) and (2, 3)"),
+        (np.full((2, 4, 3), np.nan), np.ones((2, 4)), "the points hold NaN or infinity"),
+        (np.zeros((2, 4, 3)), np.full((2, 4), np.nan), "the dwell times hold NaN"),
+        (np.zeros((2, 4, 3)), np.full((2, 4), -0.1), "the dwell times hold"),
+        ([[["here"]]], np.ones((1, 1)), "points must hold numbers"),
+    ],
+)
+def test_schedules_that_do_not_fit_are_refused(points: Floats, dwell: Floats, sentence: str) -> None:
+    problem = _problem()
+    law = _laws(problem, np.array([[0.7, 0.4]]))[0]
+    with pytest.raises(ProblemError, match=re.escape(sentence)):
+        Evaluator(problem).of_schedules(law, points, dwell)
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [
+        ({"block": 0}, "block must be an integer of at least 1, got 0"),
+        ({"block": 8.0}, "block must be an integer"),
+        ({"threads": 0}, "threads must be an integer of at least 1, got 0"),
+        ({"margin": np.nan}, "the margin must be finite and at least 0 m, got nan"),
+        ({"margin": -0.1}, "the margin must be"),
+    ],
+)
+def test_settings_that_make_no_sense_are_refused(settings: dict[str, float], sentence: str) -> None:
+    with pytest.raises(ProblemError, match=sentence):
+        Evaluator(_problem(), **settings)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("horizon", [np.nan, -1.0, np.inf, 1e9])
+def test_a_horizon_that_makes_no_sense_is_refused(horizon: float) -> None:
+    problem = _problem()
+    law = _laws(problem, np.array([[0.7, 0.4]]))[0]
+    with pytest.raises(
+        ProblemError, match=r"the horizon is .* expected at least 0 and at most 10000000 periods"
+    ):
+        Evaluator(problem).of_schedules(law, np.zeros((1, 1, 3)), np.ones((1, 1)), horizon)
+
+
+@pytest.mark.parametrize("reach", [np.nan, -1.0])
+def test_a_reach_that_makes_no_sense_is_refused(reach: float) -> None:
+    problem = _problem()
+    law = _laws(problem, np.array([[0.7, 0.4]]))[0]
+    with pytest.raises(ProblemError, match="the reach must be at least 0"):
+        Evaluator(problem).of_schedules(law, np.zeros((1, 1, 3)), np.ones((1, 1)), reach=reach)
+
+
+def test_a_program_of_other_inputs_or_outputs_is_refused() -> None:
+    problem = _problem()
+    names, evaluator = problem.features.names, Evaluator(problem)
+    swapped = trace(lambda e: (e[0], e[1]), [("e", names[::-1])])
+    with pytest.raises(
+        ProblemError, match="2 values from error_theta, error_y, error_x; expected 2 from the"
+    ):
+        evaluator.of_program(swapped, np.empty((1, 0)))
+    single = trace(lambda e: e[0], [("e", names)])
+    with pytest.raises(ProblemError, match=r"computes 1 values from .*; expected 2 from the features"):
+        evaluator.of_program(single, np.empty((1, 0)))
+
+
+def test_a_law_for_another_plant_or_other_features_is_refused() -> None:
+    problem = _problem()
+    law = _laws(problem, np.array([[0.7, 0.4]]))[0]
+    points, dwell = np.zeros((1, 1, 3)), np.ones((1, 1))
+    evaluator = Evaluator(problem)
+    for _ in range(2):  # an error is not forgotten the second time
+        with pytest.raises(ProblemError, match=r"adapt the law by law.with_limits"):
+            evaluator.of_schedules(law.with_limits([-0.1, -0.1], [0.1, 0.1]), points, dwell)
+    renamed = replace(law, plant=Plant.from_dict({**problem.plant.to_dict(), "name": "other"}))
+    with pytest.raises(ProblemError, match="the plant 'other', which is not the problem's 'unicycle'"):
+        evaluator.of_schedules(renamed, points, dwell)
+    doubled = Problem(
+        problem.plant,
+        problem.starts,
+        problem.goal,
+        tolerance=0.1,
+        features=lambda x, target: {
+            f"error_{name}": 2.0 * (getattr(target, name) - getattr(x, name)) for name in ("x", "y", "theta")
+        },
+    )
+    with pytest.raises(ProblemError, match=r"features=law.features"):
+        Evaluator(doubled).of_schedules(law, points, dwell)
+
+
+def test_a_law_read_from_a_document_fits_its_problem() -> None:
+    problem = _problem()
+    law = _laws(problem, np.array([[0.7, 0.4]]))[0]
+    points, dwell = np.zeros((1, 1, 3)), np.ones((1, 1))
+    again = Evaluator(problem).of_schedules(Law.from_dict(law.to_dict()), points, dwell)
+    assert again.final.tobytes() == Evaluator(problem).of_schedules(law, points, dwell).final.tobytes()

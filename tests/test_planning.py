@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from gpsynth.errors import ProblemError
-from gpsynth.evaluate import Evaluator
+from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.law import Law
 from gpsynth.optimizers import PSO, minimize
 from gpsynth.planning import Objective, PlanSettings, plan
@@ -135,6 +135,35 @@ def test_the_paper_cost_is_equation_17(setting):
     assert np.allclose(cost(vectors), expected, rtol=1e-15, atol=0.0)
 
 
+def test_equation_17_by_hand_when_late_and_with_the_heading_wrapped():
+    plant = Plant(
+        lambda x, u: (u.a, u.b, u.c),
+        states={"x": "m", "y": "m", "theta": "rad"},
+        controls=dict.fromkeys(("a", "b", "c"), ("1/s", -1.0, 1.0)),
+        angles=("theta",),
+        name="turning point",
+    )
+    problem = Problem(plant, [0.0, 0.0, 0.0], [1.0, 1.0, 3.0], tolerance=[0.1, 0.1, 0.1])
+    names = problem.features.names
+    program = trace(lambda seen: (seen[0], seen[1], seen[2]), [("seen", names)], ("a", "b", "c"))
+    law = Law(plant, problem.features, program, np.empty(0))
+    cost = objective((problem, law), PlanSettings(points=1), budget=5.0)
+    one = np.ones((1, 1))
+    rollouts = Rollouts(
+        arrival=np.inf * one,
+        end=8.0 * one,  # T_used, 3 s more than T+
+        cost=0.0 * one,
+        clearance=-0.1 * one,
+        exposure=0.5 * one,
+        depth=0.02 * one,
+        diverged=0.0 * one,
+        terminal=np.zeros((1, 1, 0)),
+        final=np.array([[[4.0, 5.0, -3.0]]]),  # 3 m and 4 m off, and -6 rad, which is 2 pi - 6
+    )
+    by_hand = 10.0 * np.sqrt(25.0 + (2.0 * np.pi - 6.0) ** 2) + 0.25 * (3.0 + 8.0 / 5.0) + 5.0 * 1.96
+    assert cost.costs(rollouts, np.zeros((1, 1, 3)), one)[0] == pytest.approx(by_hand, rel=1e-14)
+
+
 def test_the_path_counts_where_points_are_clear(setting):
     straight = np.array([[1.0, 0.0, 3.0, 0.0, 1.0, 2.0]])
     detour = np.array([[2.0, 0.9, 3.0, 0.7, 1.5, 1.0]])
@@ -186,6 +215,8 @@ def test_what_does_not_fit_is_said(setting):
         plan(problem, law, SMALL, initial=[Schedule(np.zeros((1, 2)), np.ones(1))])
     with pytest.raises(ProblemError, match="a plan begins at one start; the problem has 2"):
         plan(Problem(problem.plant, np.zeros((2, 2)), [4.0, 0.0], tolerance=[0.1, 0.1]), law, SMALL)
+    with pytest.raises(ProblemError, match=r"adapt the law by law.with_limits"):
+        plan(problem, law.with_limits([-2.0, -2.0], [2.0, 2.0]), SMALL)
     with pytest.raises(ProblemError, match="rounds of a plan is 0"):
         PlanSettings(rounds=0)
     with pytest.raises(ProblemError, match="dwell is"):

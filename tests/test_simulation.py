@@ -1,5 +1,7 @@
 """One trajectory: the evaluator's rollout with everything on its way."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -104,3 +106,39 @@ def _by_hand(reach: float, dwell: list[float]) -> list[float]:
 @pytest.mark.parametrize("dwell", [[2.0, 1.0], [0.5, 3.0], [9.0, 0.25]])
 def test_a_point_within_reach_is_left_at_once(reach: float, dwell: list[float]) -> None:
     assert _approaching(reach, dwell) == _by_hand(reach, dwell)
+
+
+@pytest.mark.parametrize(
+    ("choices", "sentence"),
+    [
+        ({"start": [np.nan, 0.0]}, "the start holds NaN or infinity"),
+        ({"start": ["left", 0.0]}, "the start must hold numbers"),
+        ({"schedule": Schedule(np.zeros((2, 3)), np.ones(2))}, r"shape \(2, 3\); expected \(k, 2\)"),
+        ({"horizon": np.nan}, "the horizon is nan s"),
+        ({"horizon": -1.0}, "the horizon is -1.0 s"),
+        ({"horizon": np.inf}, "the horizon is inf s"),
+        ({"horizon": 1e9}, "at most 10000000 periods"),
+        ({"reach": np.nan}, "the reach must be at least 0, got nan"),
+    ],
+)
+def test_what_does_not_fit_is_said(choices: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ProblemError, match=sentence):
+        simulate(_problem(), _law(_problem()), **choices)
+
+
+def test_a_law_with_other_limits_is_another_law() -> None:
+    problem = _problem()
+    law = _law(problem)
+    wider = law.with_limits([-2.0], [2.0])
+    with pytest.raises(
+        ProblemError, match=r"controls in \[-2, 2\], the problem for \[-1, 1\].*law.with_limits"
+    ):
+        simulate(problem, wider)
+    adapted = wider.with_limits(problem.plant.lower, problem.plant.upper)
+    assert simulate(problem, adapted).x.tobytes() == simulate(problem, law).x.tobytes()
+
+
+def test_a_law_of_other_features_is_refused() -> None:
+    other = _problem(features=lambda x, target: {"error_x": target.x - x.x, "error_v": -x.v})
+    with pytest.raises(ProblemError, match=r"give the problem features=law.features"):
+        simulate(other, _law(_problem()))

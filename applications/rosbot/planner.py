@@ -19,6 +19,8 @@ from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Plan
 from gpsynth.problem import Obstacles, Problem
+from gpsynth.schedule import Schedule
+from gpsynth.simulation import Trajectory
 
 __all__ = ["PERIOD", "Effort", "PlanReport", "plan_scenario", "problem_of"]
 
@@ -43,11 +45,10 @@ class PlanReport:
 
     @property
     def ratio(self) -> float:
-        """Arrival time over its lower bound; infinity without a plan."""
+        """Arrival time over its lower bound; infinity without a plan, 1 where there is nothing to drive."""
         if self.replay is None:
             return np.inf
-        arrival_time = self.replay.arrival_time
-        return 1.0 if arrival_time <= self.lower_bound else arrival_time / (self.lower_bound or np.nan)
+        return self.replay.arrival_time / self.lower_bound if self.lower_bound else 1.0
 
 
 def plan_scenario(
@@ -66,6 +67,10 @@ def plan_scenario(
     """
     began = time.perf_counter()
     problems = _problems(scenario, laws)
+    at_rest = replay(scenario, np.empty((0, 2)), PERIOD)
+    if at_rest.solves:
+        report = _arrived(scenario, problems[0][1], at_rest, seed)
+        return replace(report, planning_time=time.perf_counter() - began)
     verdict = reachability(scenario)
     report = PlanReport("unreachable", verdict.reason, 0.0, 0, lower_bound(scenario), seed)
     if verdict.status != "unreachable":
@@ -110,6 +115,31 @@ def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, La
     low, high = zip(scenario.speed_limits, scenario.turn_limits, strict=True)
     adapted = [law.with_limits(low, high) for law in laws]
     return [(problem_of(scenario, law), law) for law in adapted]
+
+
+def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanReport:
+    """The plan to stay, of a start within the tolerance: without points, controls and search."""
+    stay = Trajectory(
+        t=np.zeros(1),
+        x=scenario.start[np.newaxis],
+        u=np.empty((0, 2)),
+        target=scenario.goal[np.newaxis],
+        arrival=0.0,
+        cost=0.0,
+        clearance=at_rest.clearance,
+    )
+    plan = Plan(
+        schedule=Schedule(np.empty((0, 3)), np.empty(0)),
+        trajectory=stay,
+        arrival_time=0.0,
+        clearance=at_rest.clearance,
+        is_admissible=True,
+        cost=0.0,
+        evaluations=0,
+        history=(),
+        swarm=(),
+    )
+    return PlanReport("planned", "", 0.0, 0, lower_bound(scenario), seed, plan=plan, law=law, replay=at_rest)
 
 
 def _verified(scenario: Scenario, swarms: Sequence[Swarm], report: PlanReport) -> PlanReport:

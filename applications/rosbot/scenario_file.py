@@ -13,9 +13,11 @@ import numpy as np
 
 from applications.rosbot.scenario import Scenario
 from gpsynth.errors import ScenarioError
+from gpsynth.files import SURROGATES, check_readable
 
 FORMAT = "rosbot-scenario/1"
 LARGEST_FILE = 4_000_000  # bytes
+NAME = re.compile("[A-Za-z_]{1,60}")  # what fields are called: nothing that a complaint could not repeat
 CHOICES = MappingProxyType(
     {"format": FORMAT, "model": "unicycle", "type": "circle", "applies_to": "robot_centre"}
 )  # fields with one possible text
@@ -88,7 +90,6 @@ def read_scenario(path: str | Path) -> Scenario:
 def parse_scenario(text: str | bytes, *, name: str = "") -> Scenario:
     """The scenario in a JSON text, called `name` if the text does not name it."""
     data = _json(text)
-    _check_finite(data, "")
     try:
         document = msgspec.convert(data, _Document)
     except msgspec.ValidationError as error:
@@ -116,6 +117,7 @@ def _scenario(document: _Document, name: str) -> Scenario:
 
 def _text(path: Path) -> bytes:
     try:
+        check_readable(path)
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
     except OSError as error:
@@ -127,11 +129,13 @@ def _text(path: Path) -> bytes:
 
 def _json(text: str | bytes) -> object:
     try:
-        return json.loads(text, object_pairs_hook=_without_duplicates)
+        data = json.loads(text, object_pairs_hook=_without_duplicates)
+        _check_values(data, "")
     except RecursionError:
         raise ScenarioError("is nested too deeply for a scenario") from None
     except ValueError as error:
         raise ScenarioError(f"is not JSON: {error}") from None
+    return data
 
 
 def _without_duplicates(pairs: list[tuple[str, object]]) -> dict[str, object]:
@@ -142,15 +146,23 @@ def _without_duplicates(pairs: list[tuple[str, object]]) -> dict[str, object]:
     return unique
 
 
-def _check_finite(data: object, place: str) -> None:
+def _check_values(data: object, place: str) -> None:
+    """Raise ScenarioError for what a number, a text or the name of a field cannot be."""
     if isinstance(data, float) and not math.isfinite(data):
         raise ScenarioError(f"{place} is {data}; expected a finite number")
+    if isinstance(data, str) and SURROGATES.search(data):
+        raise ScenarioError(
+            f"{place or 'the document'} is {_short(data)}; half of a surrogate pair is no text"
+        )
     if isinstance(data, dict):
         for name, value in data.items():
-            _check_finite(value, _joined(place, name))
+            if not NAME.fullmatch(name):
+                where = _joined(place, _short(name))
+                raise ScenarioError(f"{where} is {_short(value)}; the format has no such field")
+            _check_values(value, _joined(place, name))
     if isinstance(data, list):
         for index, value in enumerate(data):
-            _check_finite(value, f"{place}[{index}]")
+            _check_values(value, f"{place}[{index}]")
 
 
 def _sentence(complaint: str, data: object) -> str:

@@ -3,44 +3,59 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated, Literal
 
 import msgspec
 import numpy as np
 
 from applications.rosbot.figures import draw_plan, save_figure
+from applications.rosbot.scenario import MOST
 from applications.rosbot.scenario_file import read_scenario
 from gpsynth.arrays import Floats
 from gpsynth.errors import FileError
 from gpsynth.files import read_json
 
 LARGEST_PLAN = 20_000_000  # bytes
+FARTHEST = 2.0 * MOST  # a scenario may end at MOST, and a plan or its points go beyond
+Number = Annotated[float, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
+Duration = Annotated[float, msgspec.Meta(ge=0.0, le=FARTHEST)]
 
 
 class SavedSchedule(msgspec.Struct):
     """The equilibrium points of a plan and their dwell times (s)."""
 
-    points: list[tuple[float, float, float]]
-    dwell: list[float]
+    points: list[tuple[Number, Number, Number]]
+    dwell: list[Duration]
+
+    def __post_init__(self) -> None:
+        if len(self.points) != len(self.dwell):
+            raise ValueError(
+                f"Expected as many points as dwell times, got {len(self.points)} and {len(self.dwell)}"
+            )
 
 
 class SavedPlan(msgspec.Struct):
     """What is shown of a plan.json; without a plan all but status, reason and times are null or empty."""
 
-    status: str
-    planning_time: float  # s
-    control_period: float  # s
+    status: Literal["planned", "unreachable", "not_found"]
+    planning_time: Annotated[float, msgspec.Meta(ge=0.0)]  # s
+    control_period: Annotated[float, msgspec.Meta(gt=0.0, le=FARTHEST)]  # s
     reason: str = ""
-    arrival_time: float | None = None  # s
+    arrival_time: Duration | None = None  # s
     clearance: float | None = None  # m; null without obstacles
     lower_bound: float | None = None  # s
-    controls: list[tuple[float, float]] = []
-    trajectory: list[tuple[float, float, float, float]] = []
+    controls: list[tuple[Number, Number]] = []
+    trajectory: list[tuple[Duration, Number, Number, Number]] = []
     schedule: SavedSchedule | None = None
+
+    def __post_init__(self) -> None:
+        if self.is_found and (self.arrival_time is None or not self.trajectory):
+            raise ValueError("Expected an arrival time and a trajectory, the status being planned")
 
     @property
     def is_found(self) -> bool:
-        """Whether there is a path to draw."""
-        return bool(self.trajectory and self.controls)
+        """Whether there is a plan, be it to stay."""
+        return self.status == "planned"
 
 
 def read_plan(path: Path) -> SavedPlan:
@@ -70,7 +85,7 @@ def name_of(plan_file: Path) -> str:
 def redraw(plan_file: Path) -> Path | None:
     """Draw a plan as a PNG beside it; where there is no path to draw, an older picture is removed."""
     plan, picture = read_plan(plan_file), plan_file.with_suffix(".png")
-    if not plan.is_found or not scenario_beside(plan_file).exists():
+    if not (plan.is_found and plan.controls) or not scenario_beside(plan_file).exists():
         picture.unlink(missing_ok=True)
         return None
     figure = draw_plan(

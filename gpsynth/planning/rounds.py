@@ -13,7 +13,7 @@ import numpy as np
 
 from gpsynth.arrays import Floats
 from gpsynth.errors import ProblemError
-from gpsynth.evaluate import Evaluator
+from gpsynth.evaluate import Evaluator, check_law
 from gpsynth.law import Law
 from gpsynth.optimizers import (
     CMAES,
@@ -180,10 +180,7 @@ def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
 def _check(problem: Problem, law: Law, settings: PlanSettings, initial: Sequence[Schedule]) -> None:
     if len(problem.starts) != 1:
         raise ProblemError(f"a plan begins at one start; the problem has {len(problem.starts)}")
-    if law.features != problem.features:
-        raise ProblemError(
-            "the law sees other features than the problem; give the problem features=law.features"
-        )
+    check_law(problem, law)
     for schedule in initial:
         if schedule.points.shape != (settings.points, problem.starts.shape[1]):
             raise ProblemError(

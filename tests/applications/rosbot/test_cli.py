@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -201,6 +202,18 @@ def test_a_folder_that_cannot_be_made_is_one_sentence(capsys, scenario_file, law
     _fails(capsys, *arguments, sentence=["cannot be made"])
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_start_within_the_tolerance_is_a_plan_to_stay(capsys, scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    assert _run("plan", scenario_file(goal=[0.03, 0.0, 0.05]), "--out", out, "--law", law_file) == 0
+    plan = json.loads((out / "plan.json").read_text())
+    assert (plan["status"], plan["arrival_time"], plan["evaluations"]) == ("planned", 0.0, 0)
+    assert (plan["controls"], plan["trajectory"]) == ([], [[0.0, 0.0, 0.0, 0.0]])
+    assert _run("show", out) == 0
+    assert "0.00" in capsys.readouterr().out
+    assert not (out / "plan.png").exists()
+
+
 @pytest.mark.slow
 def test_show_draws_the_picture_anew(capsys, scenario_file, law_file, tmp_path):
     out = tmp_path / "out"
@@ -220,6 +233,45 @@ def test_show_draws_the_picture_anew(capsys, scenario_file, law_file, tmp_path):
 def test_a_damaged_plan_is_one_sentence(capsys, tmp_path, content, sentence):
     (tmp_path / "plan.json").write_text(content)
     _fails(capsys, "show", tmp_path, sentence=["plan.json", sentence])
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"status": "great"},
+        {"control_period": 0.0},
+        {"control_period": -0.05},
+        {"planning_time": -1.0},
+        {"arrival_time": None},
+        {"arrival_time": -1.0},
+        {"trajectory": []},
+        {"trajectory": [[0.0, 1e300, 0.0, 0.0]]},
+        {"trajectory": [[0.0, 0.0, 0.0]]},
+        {"controls": [[0.0, 1e300]]},
+        {"schedule": {"points": [[0.0, 0.0, 0.0]], "dwell": []}},
+        {"schedule": {"points": [[0.0, 0.0, 0.0]], "dwell": [-1.0]}},
+    ],
+)
+def test_a_plan_that_cannot_be_is_one_sentence(capsys, tmp_path, changes):
+    plan = {
+        "status": "planned",
+        "planning_time": 1.0,
+        "control_period": 0.05,
+        "arrival_time": 0.05,
+        "controls": [[0.5, 0.0]],
+        "trajectory": [[0.0, 0.0, 0.0, 0.0], [0.05, 0.025, 0.0, 0.0]],
+        "schedule": {"points": [[1.0, 0.0, 0.0]], "dwell": [1.0]},
+    }
+    (tmp_path / "plan.json").write_text(json.dumps(plan))
+    assert _run("show", tmp_path) == 0
+    capsys.readouterr()
+    (tmp_path / "plan.json").write_text(json.dumps(plan | changes))
+    _fails(capsys, "show", tmp_path, sentence=["plan.json is not a plan: "])
+
+
+def test_a_pipe_is_no_plan_and_is_not_waited_for(capsys, tmp_path):
+    os.mkfifo(tmp_path / "plan.json")
+    _fails(capsys, "show", tmp_path / "plan.json", sentence=["plan.json cannot be read", "regular file"])
 
 
 def test_a_folder_without_a_run_is_one_sentence(capsys, tmp_path):

@@ -42,7 +42,7 @@ def _circles(ax, radius):
 def test_the_path_runs_through_the_trajectory_from_start_to_goal(ax):
     lines = _lines(draw_path(ax, SCENARIO, TRAJECTORY, WAYPOINTS))
     assert np.array_equal(lines["path"].get_xydata(), TRAJECTORY[:, 1:3])
-    assert np.array_equal(lines["waypoints"].get_xydata(), WAYPOINTS[:, :2])
+    assert np.array_equal(lines["equilibrium points"].get_xydata(), WAYPOINTS[:, :2])
     assert lines["start"].get_xydata().tolist() == [[0.0, 0.0]]
     assert lines["goal"].get_xydata().tolist() == [[1.0, 0.0]]
     assert [text.get_text() for text in ax.texts] == ["1", "2"]
@@ -73,7 +73,7 @@ def test_controls_are_held_over_their_periods_between_their_limits(ax):
 def test_nothing_is_drawn_for_what_is_not_there(ax):
     empty = replace(SCENARIO, circles=np.empty((0, 5)))
     labels = _lines(draw_path(ax, empty, TRAJECTORY, np.empty((0, 3))))
-    assert not {"obstacle", "waypoints"} & set(labels)
+    assert not {"obstacle", "equilibrium points"} & set(labels)
 
 
 def test_a_figure_is_written_as_png(tmp_path):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from applications.rosbot import planner
 from applications.rosbot.guides import direct_guides, guides_along
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.plan_file import plan_document, write_plan
@@ -107,8 +108,31 @@ def test_an_unreachable_goal_is_told_from_one_that_was_not_found():
 
 
 def test_a_start_at_the_goal_has_arrived():
-    report = plan_scenario(scene(goal=[0.0, 0.0, 0.0]), [law()], effort=QUICK)
-    assert report.replay.arrival_time == 0.0
+    for goal in ([0.0, 0.0, 0.0], [0.04, -0.02, 0.09]):
+        report = plan_scenario(scene(goal=goal), [law()], effort=QUICK)
+        document = plan_document(report)
+        assert (report.status, report.evaluations, report.lower_bound, report.ratio) == (
+            "planned",
+            0,
+            0.0,
+            1.0,
+        )
+        assert (document["arrival_time"], document["controls"]) == (0.0, [])
+        assert document["trajectory"] == [[0.0, 0.0, 0.0, 0.0]]
+        assert document["schedule"] == {"points": [], "dwell": []}
+        assert document["clearance"] == pytest.approx(np.hypot(1.5, 0.05) - 0.45)
+
+
+def test_nothing_that_the_replay_rejects_is_called_planned(monkeypatch):
+    monkeypatch.setattr(planner, "replay", lambda *given: replace(replay(*given), in_bounds=False))
+    rejected = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, attempts=1))
+    assert rejected.status == "not_found"
+    assert rejected.evaluations > 0
+    assert (rejected.plan, rejected.replay, plan_document(rejected)["controls"]) == (None, None, [])
+
+
+def test_the_ratio_shows_when_a_bound_is_beaten(report):
+    assert replace(report, lower_bound=2.0 * report.replay.arrival_time).ratio == 0.5
 
 
 def test_the_better_of_two_laws_is_taken():

@@ -1,5 +1,6 @@
 import copy
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -118,6 +119,12 @@ def test_a_missing_field_is_named(place):
         (b'{"goal": 1, "goal": 2}', 'field "goal" stands twice'),
         (b"[" * 100_000, "nested too deeply"),
         (b"1" * 5000, "is not JSON"),
+        (b"[" * 3000 + b"]" * 3000, "nested too deeply"),
+        (changed("name", "\ud800"), r'name is "\ud800"; half of a surrogate pair'),
+        (changed("\ud800", 1), r'"\ud800" is 1; the format has no such field'),
+        (changed("robot.a\nb", "c\nd"), r'robot."a\nb" is "c\nd"; the format has no such field'),
+        (changed("x` - at `$", 1), '"x` - at `$" is 1; the format has no such field'),
+        (changed("time_limit", 10**400), "number out of range"),
     ],
 )
 def test_what_is_no_scenario_is_refused(text, sentence):
@@ -137,3 +144,10 @@ def test_a_missing_file_a_folder_and_a_huge_file_are_refused(tmp_path):
         with pytest.raises(ScenarioError, match=reason) as caught:
             read_scenario(path)
         assert str(caught.value).startswith(f"{path}: ")
+
+
+def test_a_pipe_and_a_device_are_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe.json")
+    for path in (tmp_path / "pipe.json", Path("/dev/zero")):
+        with pytest.raises(ScenarioError, match="cannot be read: it is not a regular file"):
+            read_scenario(path)
