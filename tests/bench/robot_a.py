@@ -22,7 +22,7 @@ GOLDEN = Path(__file__).parents[3] / "shared" / "golden" / "nom_default.json"
 STARTS = list(
     itertools.product((-2.5, -1.25, 0.0, 1.25, 2.5), (-2.5, 0.0, 2.5), (-5 * np.pi / 12, 0.0, 5 * np.pi / 12))
 )
-OPERATIONS = ("add", "sub", "mul", "sgn", "tanh", "signed_sqrt", "sin", "atan", "neg")
+OPERATIONS = ("add", "sub", "mul", "neg", "sgn", "signed_sqrt", "tanh", "sin", "atan")
 NEAR = 0.1  # largest error at which the robot counts as there, and its wheels stop
 BUDGET = 80_000
 
@@ -34,9 +34,10 @@ def robot(x, u):
     return v * np.cos(x.theta), v * np.sin(x.theta), omega
 
 
-def twice_the_miss(x, goal):
-    """What f0 adds to the time."""
-    return 2.0 * np.sqrt((goal.x - x.x) ** 2 + (goal.y - x.y) ** 2 + (goal.theta - x.theta) ** 2)
+def misses(x, goal):
+    """The published functionals weigh the miss 2 and 1; the search minimizes their sum."""
+    miss = np.sqrt((goal.x - x.x) ** 2 + (goal.y - x.y) ** 2 + (goal.theta - x.theta) ** 2)
+    return 2.0 * miss, miss
 
 
 PLANT = gs.Plant(
@@ -58,7 +59,7 @@ def problem(step: float) -> gs.Problem:
         period=step,
         method="heun",
         hold=False,
-        terminal=twice_the_miss,
+        terminal=misses,
     )
 
 
@@ -74,8 +75,8 @@ def synthesized(seed: int, budget: int) -> SynthesisResult:
 def functionals(program: gs.Program, parameters: Floats, step: float) -> tuple[float, float, int]:
     """f0, f1 and the number of starts from which the goal is reached."""
     rolled = gs.Evaluator(problem(step), threads=2).of_program(program, parameters[np.newaxis])
-    twice = rolled.terminal[0, :, 0].sum()
-    return float(rolled.end[0].sum() + twice), float(twice / 2.0), int(np.isfinite(rolled.arrival[0]).sum())
+    f0, f1 = rolled.end[0].sum() + rolled.terminal[0, :, 0].sum(), rolled.terminal[0, :, 1].sum()
+    return float(f0), float(f1), int(np.isfinite(rolled.arrival[0]).sum())
 
 
 def published() -> tuple[gs.Program, Floats]:
@@ -83,7 +84,9 @@ def published() -> tuple[gs.Program, Floats]:
     document = read_json(GOLDEN)
     nodes = (tuple(document[name]) for name in ("inputs", "parameters", "outputs"))
     matrix = Matrix(np.array(document["matrix"]), *nodes)
-    return decode_matrix(matrix), np.array(document["q"], dtype=np.float64)
+    return decode_matrix(matrix, problem(0.01).features.names, ("u1", "u2")), np.array(
+        document["q"], dtype=np.float64
+    )
 
 
 def _row(name: str, program: gs.Program, parameters: Floats) -> str:
@@ -94,7 +97,7 @@ def _row(name: str, program: gs.Program, parameters: Floats) -> str:
 def main() -> None:
     """Print one line a seed, the published law first."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, nargs="+", default=[0, 1, 2])
+    parser.add_argument("--seeds", type=int, nargs="+", default=[0, 6])
     parser.add_argument("--budget", type=int, default=BUDGET)
     arguments = parser.parse_args()
     print(
