@@ -57,7 +57,7 @@ $(LOCKED): requirements.lock
 		|| { echo "gpsynth needs Python 3.11 or newer, '$(PYTHON)' is not: run make PYTHON=/path/to/python3.11" >&2; exit 1; }
 	@echo "installing the locked dependencies into $(VENV)"
 	@$(PYTHON) -m venv --clear $(VENV)
-	@$(BIN)/python -m pip install -qq --disable-pip-version-check --require-hashes -r requirements.lock
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check --no-deps --require-hashes -r requirements.lock
 	@touch $@
 
 $(READY): $(LOCKED) pyproject.toml
