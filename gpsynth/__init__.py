@@ -7,6 +7,7 @@ from gpsynth.errors import GpsynthError
 
 if TYPE_CHECKING:
     from gpsynth.builder import Builder, bind, compose, simplify
+    from gpsynth.draws import Draws, crossed, random_draws
     from gpsynth.encodings.cartesian import CartesianEncoding
     from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
@@ -32,6 +33,9 @@ _HOME = {
     "bind": "builder",
     "compose": "builder",
     "simplify": "builder",
+    "Draws": "draws",
+    "crossed": "draws",
+    "random_draws": "draws",
     "CartesianEncoding": "encodings.cartesian",
     "NetworkOperatorEncoding": "encodings.network_operator",
     "ParameterSpace": "encodings.parameters",
@@ -70,6 +74,7 @@ __all__ = [
     "Builder",
     "CartesianEncoding",
     "DifferentialEvolution",
+    "Draws",
     "Evaluator",
     "GpsynthError",
     "Law",
@@ -90,8 +95,10 @@ __all__ = [
     "__version__",
     "bind",
     "compose",
+    "crossed",
     "minimize",
     "plan",
+    "random_draws",
     "simplify",
     "simulate",
     "stream",

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
-from gpsynth.kernels.layout import Clock, Lanes, World, sealed
-from gpsynth.kernels.pack import Frame, Instructions, Loop, frame, pack
+from gpsynth.kernels.layout import Clock, Conditions, Lanes, World, sealed
+from gpsynth.kernels.pack import Extent, Frame, Instructions, Loop, frame, pack
 from gpsynth.kernels.tableaus import TABLEAUS
 from gpsynth.law import Law
 from gpsynth.plant import Plant
@@ -150,13 +150,36 @@ class Evaluator:
     @cached_property
     def frame(self) -> Frame:
         """The closed loop but for the law: what does not change from candidate to candidate."""
-        problem = self.problem
-        parts = (problem.features, problem.plant.saturation, problem.rates, problem.arrival)
+        problem, given = self.problem, self.conditions
+        noisy, late = len(given.noise) > 0, given.slots > 0
+        features = problem.measured if noisy else problem.features
+        parts = (features, problem.plant.saturation, problem.rates, problem.arrival)
         names = problem.plant.state_names
-        angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
-        return frame(
-            Loop(*map(instructions, parts)), states=len(names), stages=self.clock.b.size, angles=angles
+        extent = Extent(
+            states=len(names),
+            stages=self.clock.b.size,
+            plant=given.parameters.shape[1],
+            noise=noisy,
+            acting=len(given.rest) if late else 0,
+            slots=given.slots,
         )
+        angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
+        return frame(Loop(*map(instructions, parts)), extent, angles)
+
+    @cached_property
+    def conditions(self) -> Conditions:
+        """The problem's draws as the kernels want them."""
+        problem, draws = self.problem, self.problem.draws
+        rest = np.clip(np.zeros(len(problem.plant.controls)), problem.plant.lower, problem.plant.upper)
+        nothing = np.empty(0, dtype=np.int32)
+        if draws is None:
+            return sealed(
+                Conditions(problem.plant_parameters, nothing, 0, rest, np.empty((0, 0, 0)), nothing)
+            )
+        delays = np.rint(draws.delay / problem.step).astype(np.int32)
+        substeps, longest = self.clock.substeps, int(delays.max(initial=0))
+        slots = -(-longest // substeps) + 1 if longest else 0
+        return sealed(Conditions(problem.plant_parameters, delays, slots, rest, draws.noise, draws.tables))
 
     @cached_property
     def clock(self) -> Clock:
@@ -185,7 +208,10 @@ def roll(
     result = np.empty((total, rollout.TERMINAL + terminals + states))
 
     def run(first: int, last: int) -> None:
-        rollout.roll(rows, code, lanes, clock, evaluator.world, block, first, last, result, trace)
+        rollout.roll(
+            *(rows, code, lanes, evaluator.conditions, clock, evaluator.world),
+            *(block, first, last, result, trace),
+        )
 
     slice_size = block * max(1, -(-total // (block * evaluator.threads)))
     slices = [(first, min(first + slice_size, total)) for first in range(0, total, slice_size)]

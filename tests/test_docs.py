@@ -67,6 +67,13 @@ def test_getting_started_runs_as_printed(tmp_path, monkeypatch):
                 subprocess.run(shlex.split(line), check=True, cwd=tmp_path)
 
 
+def test_robustness_runs_as_printed():
+    place: dict[str, object] = {}
+    for block in blocks("robustness.md", "python"):
+        exec(compile(block, "robustness.md", "exec"), place)
+    assert len(place["problem"].starts) == 500
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_named_files_and_functions_exist(page):
     missing = [

@@ -6,8 +6,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from applications.rosbot.model import Pose, features, reached, unicycle
+from applications.rosbot.model import STATES, STEP, Pose, features, reached, unicycle
 from gpsynth.arrays import Floats
+from gpsynth.draws import Draws
 from gpsynth.encodings.cartesian import CartesianEncoding
 from gpsynth.encodings.network_operator import NetworkOperatorEncoding
 from gpsynth.encodings.parameters import ParameterSpace
@@ -56,25 +57,30 @@ def stabilization(
     method: Method = "rk4",
     plant: Plant | None = None,
     stop: bool = True,
+    draws: Draws | None = None,
 ) -> Problem:
     """Bring the robot from `starts` (S, 3) to the origin with heading 0 in least time; with stop=False, keep it there.
 
     Running cost is the time outside the tolerance and a tenth of what is missing; a run that is not within it at the
-    horizon (s) pays for the rest.
+    horizon (s) pays for the rest. On a plant with speeds among its states the robot starts from rest.
     """
+    plant = plant or unicycle()
+    speeds = len(plant.states) - len(STATES)
     return Problem(
-        plant or unicycle(),
-        starts,
-        goal=(0.0, 0.0, 0.0),
-        tolerance=(POSITION, POSITION, HEADING),
+        plant,
+        np.pad(np.atleast_2d(starts), ((0, 0), (0, speeds))),
+        goal=np.zeros(len(plant.states)),
+        tolerance=(POSITION, POSITION, HEADING, *[1.0] * speeds),
         horizon=horizon,
         period=period,
+        step=period / np.ceil(period / STEP - 1e-9) if speeds else period,
         method=method,
         features=features,
         reached=reached(POSITION, HEADING),
         running=_away,
         terminal=_missing,
         stop=stop,
+        draws=draws,
     )
 
 

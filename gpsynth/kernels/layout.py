@@ -24,6 +24,10 @@ class Rows(NamedTuple):
     diverged: int  # 1
     cost: int  # 1
     near: int  # 4, clearance, exposure, depth and one row of scratch
+    plant: int  # q, parameters of the plant
+    error: int  # n or 0, of the measured state
+    acting: int  # m or 0, controls that have arrived
+    past: int  # slots m, controls computed at the latest ticks
     parameter: int  # p, behind the programs that do not depend on the law
     total: int  # all rows
 
@@ -50,6 +54,17 @@ class Lanes(NamedTuple):
     parameters: Floats  # (C, p)
     points: Floats  # (K, k, n)
     ends: Floats  # (K, k) s, when a point stops being the target
+
+
+class Conditions(NamedTuple):
+    """What else differs from start to start; lengths of 0 where the problem knows no such thing."""
+
+    parameters: Floats  # (S, q) of the plant
+    delays: Ints  # (S,) or (0,) integration steps between a control and its effect
+    slots: int  # ticks that the longest delay spans, and one; 0 without delays
+    rest: Floats  # (m,) controls that act before the first command
+    noise: Floats  # (K, T, n) errors of the measured state
+    tables: Ints  # (S,) which table of noise each start has
 
 
 class Clock(NamedTuple):
@@ -81,6 +96,7 @@ _INTEGER, _NUMBER, _FLAG = types.int64, types.float64, types.boolean
 ROWS = types.NamedUniTuple(_INTEGER, len(Rows._fields), Rows)
 CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, INTEGERS, INTEGERS), Code)
 LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
+CONDITIONS = types.NamedTuple((MATRIX, INTEGERS, _INTEGER, VECTOR, TENSOR, INTEGERS), Conditions)
 CLOCK = types.NamedTuple((MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER), Clock)
 WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
 

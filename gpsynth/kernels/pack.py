@@ -20,9 +20,9 @@ class Instructions(NamedTuple):
 class Loop(NamedTuple):
     """The parts of a closed loop around its law, each reading what the ones before it give."""
 
-    features: Instructions  # of state and target; the law reads them and the parameters
+    features: Instructions  # of state, target and, if there is any, the state's error; the law reads them
     limits: Instructions  # of the law's outputs: the controls
-    rates: Instructions  # of state, controls, goal and time: derivatives and running cost
+    rates: Instructions  # of state, controls, goal, time and the plant's parameters: derivatives and running cost
     arrival: Instructions  # of state and goal: measure and terminal costs
 
 
@@ -44,22 +44,37 @@ class _Placed(NamedTuple):
     outputs: Ints
 
 
-def rows_of(states: int, stages: int) -> Rows:
+class Extent(NamedTuple):
+    """How many rows a rollout needs beside its programs."""
+
+    states: int
+    stages: int
+    plant: int = 0  # parameters of the plant
+    noise: bool = False
+    acting: int = 0  # controls that come late
+    slots: int = 0  # ticks whose controls are kept for that
+
+
+def rows_of(extent: Extent) -> Rows:
     """Where the quantities of a rollout stand; programs follow from row `total` on, parameters after them."""
-    sizes = (states, states, states, states, 1, stages * (states + 1), 1, 1, 1, 1, 1, 4)
+    states, late = extent.states, (extent.acting, extent.slots * extent.acting)
+    fixed = (states, states, states, states, 1, extent.stages * (states + 1), 1, 1, 1, 1, 1, 4)
+    sizes = (*fixed, extent.plant, states if extent.noise else 0, *late)
     first = np.concatenate(([0], np.cumsum(sizes))).tolist()
     return Rows(*first, *first[-1:])
 
 
-def frame(loop: Loop, *, states: int, stages: int, angles: Ints) -> Frame:
+def frame(loop: Loop, extent: Extent, angles: Ints) -> Frame:
     """The workspace of a closed loop and everything in it but the law; angles: (a,) states to be wrapped."""
-    rows = rows_of(states, stages)
+    rows, states = rows_of(extent), extent.states
     state, target, goal = (_range(first, states) for first in (rows.state, rows.target, rows.goal))
+    error, plant = _range(rows.error, states if extent.noise else 0), _range(rows.plant, extent.plant)
     raw = -1 - _range(0, len(loop.limits.outputs))  # operands that `pack` replaces by the law's outputs
-    features, free = _placed(loop.features, np.concatenate((state, target)), rows.total)
+    features, free = _placed(loop.features, np.concatenate((state, target, error)), rows.total)
     limits, free = _placed(loop.limits, raw, free)
+    controls = _range(rows.acting, extent.acting) if extent.acting else limits.outputs
     rates, free = _placed(
-        loop.rates, np.concatenate((state, limits.outputs, goal, _range(rows.time, 1))), free
+        loop.rates, np.concatenate((state, controls, goal, _range(rows.time, 1), plant)), free
     )
     arrival, free = _placed(loop.arrival, np.concatenate((state, goal)), free)
     parts = (features, limits, rates, arrival)

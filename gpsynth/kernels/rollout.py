@@ -15,7 +15,21 @@ from gpsynth.arrays import Floats
 from gpsynth.kernels import trigonometry
 from gpsynth.kernels.clearance import approach
 from gpsynth.kernels.compile import OUT_MATRIX, OUT_TENSOR, VECTOR, kernel, widest_vectors
-from gpsynth.kernels.layout import CLOCK, CODES, LANES, ROWS, WORLD, Clock, Code, Lanes, Rows, World
+from gpsynth.kernels.conditions import arrive, command, measure, settle
+from gpsynth.kernels.layout import (
+    CLOCK,
+    CODES,
+    CONDITIONS,
+    LANES,
+    ROWS,
+    WORLD,
+    Clock,
+    Code,
+    Conditions,
+    Lanes,
+    Rows,
+    World,
+)
 from gpsynth.kernels.machine import execute
 
 ARRIVAL, END, COST, CLEARANCE, EXPOSURE, DEPTH, DIVERGED, TERMINAL = range(8)  # columns of the result
@@ -210,11 +224,16 @@ def workspace(rows: int, columns: int) -> Floats:
     return flat[skipped : skipped + rows * columns].reshape((rows, columns))
 
 
-@kernel(types.void(ROWS, CODES, LANES, CLOCK, WORLD, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX, OUT_TENSOR))
+@kernel(
+    types.void(
+        *(ROWS, CODES, LANES, CONDITIONS, CLOCK, WORLD, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX, OUT_TENSOR)
+    )
+)
 def roll(
     rows: Rows,
     code: Code,
     lanes: Lanes,
+    given: Conditions,
     clock: Clock,
     world: World,
     block: int,
@@ -236,6 +255,7 @@ def roll(
     for begin in range(first, last, block):
         count = min(block, last - begin)
         load(w, rows, code, lanes, begin, count)
+        settle(w, rows, lanes, given, begin, count)
         passed[:] = 0
         shift[:] = 0.0
         for period in range(clock.periods + 1):
@@ -243,14 +263,21 @@ def roll(
             if lanes.ends.shape[1] > 0:
                 retarget(w, rows, code, lanes, clock, passed, shift, begin, count, time)
             running = judge(w, rows, code, clock, n, count, time)
+            if len(given.noise) > 0:
+                measure(w, rows, lanes, given, begin, count, period)
             if clock.hold or len(trace) > 0:
                 execute(code.instructions, 0, code.ends[0], w, count)
             if len(trace) > 0:
                 record(w, rows, code, n, begin, count, period, time, trace)
             if running == 0 or period == clock.periods:
                 break
+            if given.slots > 0:
+                command(w, rows, code, given, count, period)
             for substep in range(clock.substeps):
                 now = time + substep * clock.step
+                if given.slots > 0:
+                    step = period * clock.substeps + substep
+                    arrive(w, rows, lanes, given, begin, count, step, clock.substeps)
                 advance(w, rows, code, clock, n, count, now)
                 if len(world.position) > 0:
                     approach(
