@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
     from gpsynth.tracing import trace, where, wrap_angle
+    from gpsynth.verify.robustness import Robustness, assess
+    from gpsynth.verify.stress import Stress
 
 __version__ = "0.1.0"
 
@@ -65,6 +67,9 @@ _HOME = {
     "trace": "tracing",
     "where": "tracing",
     "wrap_angle": "tracing",
+    "Robustness": "verify.robustness",
+    "assess": "verify.robustness",
+    "Stress": "verify.stress",
 }  # public name -> module; loaded on first use, so that `import gpsynth` does not wait for numba
 
 __all__ = [
@@ -86,13 +91,16 @@ __all__ = [
     "Plant",
     "Problem",
     "Program",
+    "Robustness",
     "Rollouts",
     "Schedule",
+    "Stress",
     "StructureSearch",
     "SynthesisResult",
     "Trajectory",
     "TreeEncoding",
     "__version__",
+    "assess",
     "bind",
     "compose",
     "crossed",

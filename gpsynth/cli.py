@@ -1,4 +1,4 @@
-"""The command `gpsynth`: synthesize a law for the plant in a Python file, export a law, say what is in one."""
+"""The command `gpsynth`: synthesize a law for the plant in a Python file, export, assess and describe laws."""
 
 import os
 import runpy
@@ -138,6 +138,21 @@ def export(law_file: Path, out: Path, name: str, formats: tuple[str, ...]) -> No
     """Write a law as JSON, text, LaTeX, C99 and Python."""
     for path in export_law(load_law(law_file), out, name=name, formats=formats):
         click.echo(path)
+
+
+@cli.command()
+@law_argument
+@click.argument("plant_file", metavar="PLANT.py", type=click.Path(path_type=Path))
+@threads_option
+def assess(law_file: Path, plant_file: Path, threads: int) -> None:
+    """Say how a law does on the problem in PLANT.py: as given, with a finer clock, with other limits.
+
+    PLANT.py is code and is executed, as in synthesize.
+    """
+    with status(LOADING):
+        from gpsynth.verify import robustness
+    law = load_law(law_file)
+    click.echo(robustness.assess(law, read_plant_file(plant_file)[0], threads=threads).table())
 
 
 @cli.command()

@@ -92,9 +92,7 @@ def random_draws(
     parts = np.column_stack([rng.permutation(count) for _ in bounds])
     shares = (parts + rng.random(parts.shape)) / count
     values = bounds[:, 0] + shares * (bounds[:, 1] - bounds[:, 0])
-    errors = None
-    if noise is not None:
-        errors = rng.normal(size=(count, ticks, len(plant.states))) * _widths(plant, noise)
+    errors = None if noise is None else noise_tables(plant, rng, (count, ticks), noise)
     return Draws(values[:, :-1], delay=values[:, -1], noise=errors)
 
 
@@ -120,14 +118,16 @@ def check_draws(draws: Any, plant: Plant, starts: int, *, hold: bool) -> None:
         raise ProblemError("a delay needs hold=True: only a control that is held can come late")
 
 
-def _widths(plant: Plant, noise: npt.ArrayLike) -> Floats:
-    """The standard deviation of each state's error, (n,); raises ProblemError for another shape or a negative one."""
-    size = len(plant.states)
-    widths = np.repeat(noise, size) if np.ndim(noise) == 0 else noise
-    deviations = shaped("the noise's standard deviation", widths, (size,))
+def noise_tables(
+    plant: Plant, rng: np.random.Generator, size: tuple[int, int], deviation: npt.ArrayLike
+) -> Floats:
+    """Normal errors (K, T, n) of the plant's states for K, T = `size`; `deviation` (n,) or one number for all."""
+    states = len(plant.states)
+    widths = np.repeat(deviation, states) if np.ndim(deviation) == 0 else deviation
+    deviations = shaped("the noise's standard deviation", widths, (states,))
     if np.any(deviations < 0.0):
         raise ProblemError(f"the noise's standard deviation must be at least 0, got {deviations.tolist()}")
-    return deviations
+    return rng.normal(size=(*size, states)) * deviations
 
 
 def _tables(rows: npt.NDArray[Any], count: int, tables: int) -> Ints:

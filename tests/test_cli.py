@@ -147,6 +147,18 @@ def test_one_format_is_the_same_alone_as_among_all(law_file, tmp_path, chosen, n
         assert (alone / name).read_bytes() == (together / name).read_bytes()
 
 
+def test_assess_prints_the_report(capsys, law_file, plant_file):
+    assert main(["assess", str(law_file), str(plant_file()), "--threads", "1"]) == 0
+    assert capsys.readouterr().out.count(" 2 of 2") == 4
+
+
+def test_a_law_for_another_problem_is_one_sentence(capsys, law_file, plant_file):
+    other = (
+        "from dataclasses import replace\nproblem = replace(problem, features=lambda x, target: {'a': x.x})"
+    )
+    _fails(capsys, ["assess", law_file, plant_file(after=other)], "expected 1 from the features a")
+
+
 def test_info_says_what_a_law_is(capsys, law_file):
     assert main(["info", str(law_file)]) == 0
     text = capsys.readouterr().out

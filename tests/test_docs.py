@@ -67,11 +67,12 @@ def test_getting_started_runs_as_printed(tmp_path, monkeypatch):
                 subprocess.run(shlex.split(line), check=True, cwd=tmp_path)
 
 
-def test_robustness_runs_as_printed():
+def test_robustness_runs_as_printed(capsys):
     place: dict[str, object] = {}
     for block in blocks("robustness.md", "python"):
         exec(compile(block, "robustness.md", "exec"), place)
     assert len(place["problem"].starts) == 500
+    assert blocks("robustness.md", "text") == [capsys.readouterr().out]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
