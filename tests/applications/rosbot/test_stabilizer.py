@@ -11,6 +11,7 @@ from gpsynth.draws import Draws, crossed, random_draws
 from gpsynth.errors import EncodingError
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
+from gpsynth.simulation import simulate
 
 
 def arrivals(law: Law, count: int, *, period: float, box: float = 2.0) -> np.ndarray:
@@ -46,6 +47,17 @@ def test_the_shipped_law_drives_the_dynamic_robot_over_its_whole_family() -> Non
     problem = stabilization(starts, plant=plant, draws=draws, horizon=40.0)
     rolled = Evaluator(problem, threads=2).of_program(law.program, law.parameters[np.newaxis])
     assert np.all(np.isfinite(rolled.arrival))
+
+
+def test_a_law_is_carried_to_the_dynamic_robot_by_its_plant_and_features() -> None:
+    law, starts = default_law(), poses(np.random.default_rng(8), 3)
+    problem = stabilization(starts, plant=dynamic_unicycle(), draws=Draws(delay=[0.0, 0.05, 0.1]))
+    carried = replace(law, plant=problem.plant, features=problem.features)
+    rolled = Evaluator(problem).of_program(law.program, law.parameters[np.newaxis])
+    for row in range(3):
+        alone = simulate(problem, carried, row=row)
+        assert alone.arrival == rolled.arrival[0, row] < np.inf
+        assert alone.x[0].tolist() == [*starts[row], 0.0, 0.0]
 
 
 def test_steps_resolve_the_shortest_lag() -> None:
