@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth.arrays import Floats, Ints, frozen, shaped
+from gpsynth.arrays import Floats, Ints, frozen, numbers, shaped
 from gpsynth.errors import ProblemError
 from gpsynth.plant import Plant
 
@@ -22,9 +22,7 @@ class Draws:
 
     parameters: Floats  # (S, q) of the plant; (S, 0): the nominal ones
     delay: Floats  # (S,) s
-    noise: (
-        Floats  # (K, T, n) errors of the measured state, one a control period, T over and over; K = 0: none
-    )
+    noise: Floats  # (K, T, n) errors of the measured state, one a period, over again after T; K = 0: none
     tables: Ints  # (S,) which of the K tables of noise a row has
 
     def __init__(
@@ -38,20 +36,17 @@ class Draws:
         """One delay stands for all rows; row k has table k modulo K unless `tables` says otherwise."""
         errors = np.empty((0, 0, 0)) if noise is None else shaped("noise", noise, (-1, -1, -1))
         vectors = None if parameters is None else shaped("the draws' parameters", parameters, (-1, -1))
-        lengths = [
-            len(np.atleast_1d(part))
-            for part in (vectors, delay if np.ndim(delay) else None, tables)
-            if part is not None
-        ]
-        count = max(lengths, default=max(1, len(errors)))
-        vectors = np.empty((count, 0)) if vectors is None else vectors
-        times = np.broadcast_to(delay, (count,)) if np.ndim(delay) == 0 else delay
-        rows = np.arange(count) % max(1, len(errors)) if tables is None else np.asarray(tables)
+        times = numbers("the draws' delay", delay)
+        chosen = None if tables is None else numbers("tables", tables)
+        rowed = [part for part in (vectors, times, chosen) if part is not None and part.ndim]
+        count = len(rowed[0]) if rowed else max(1, len(errors))
         values = {
-            "parameters": shaped("the draws' parameters", vectors, (count, -1)),
-            "delay": shaped("the draws' delay", times, (count,)),
+            "parameters": frozen(np.empty((count, 0))) if vectors is None else vectors,
+            "delay": shaped("the draws' delay", times if times.ndim else np.full(count, times), (count,)),
             "noise": frozen(errors),
-            "tables": _tables(rows, count, len(errors)),
+            "tables": _tables(
+                np.arange(count) % max(1, len(errors)) if chosen is None else chosen, errors, count
+            ),
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -66,7 +61,7 @@ class Draws:
 
 def crossed(starts: npt.ArrayLike, draws: Draws) -> tuple[Floats, Draws]:
     """Every start (S, n) under every one of D draws: starts (D S, n) and their draws, all starts of a draw together."""
-    places = shaped("starts", np.atleast_2d(np.asarray(starts, dtype=np.float64)), (-1, -1))
+    places = shaped("starts", np.atleast_2d(numbers("starts", starts)), (-1, -1))
     rows = np.repeat(np.arange(len(draws)), len(places))
     repeated = Draws(
         draws.parameters[rows], delay=draws.delay[rows], noise=draws.noise, tables=draws.tables[rows]
@@ -96,7 +91,7 @@ def random_draws(
     return Draws(values[:, :-1], delay=values[:, -1], noise=errors)
 
 
-def check_draws(draws: Any, plant: Plant, starts: int, *, hold: bool) -> None:
+def check_draws(draws: Any, plant: Plant, starts: int, *, hold: bool, horizon: float) -> None:
     """Raises ProblemError unless these are draws for that many starts of the plant."""
     if not isinstance(draws, Draws):
         raise ProblemError(f"draws must be Draws or None, got {draws!r}")
@@ -116,6 +111,8 @@ def check_draws(draws: Any, plant: Plant, starts: int, *, hold: bool) -> None:
         )
     if not hold and np.any(draws.delay > 0.0):
         raise ProblemError("a delay needs hold=True: only a control that is held can come late")
+    if np.any(draws.delay > horizon):
+        raise ProblemError(f"a delay of {draws.delay.max()} s is longer than the horizon, {horizon} s")
 
 
 def noise_tables(
@@ -130,10 +127,8 @@ def noise_tables(
     return rng.normal(size=(*size, states)) * deviations
 
 
-def _tables(rows: npt.NDArray[Any], count: int, tables: int) -> Ints:
-    whole = np.issubdtype(rows.dtype, np.integer)
-    if rows.shape != (count,) or not whole or np.any(rows < 0) or np.any(rows >= max(1, tables)):
-        raise ProblemError(
-            f"tables are {count} integers from 0 to {max(1, tables) - 1}, one a row, got {rows.tolist()}"
-        )
+def _tables(rows: npt.NDArray[Any], errors: Floats, count: int) -> Ints:
+    last = max(0, len(errors) - 1)
+    if rows.shape != (count,) or not np.all((rows == np.rint(rows)) & (rows >= 0) & (rows <= last)):
+        raise ProblemError(f"tables are {count} integers from 0 to {last}, one a row, got {rows.tolist()}")
     return frozen(rows.astype(np.int32))

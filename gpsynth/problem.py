@@ -267,7 +267,9 @@ def _check(problem: Problem) -> None:
     if problem.obstacles is not None:
         _check_places(problem, problem.obstacles)
     if problem.draws is not None:
-        check_draws(problem.draws, problem.plant, len(problem.starts), hold=problem.hold)
+        check_draws(
+            *(problem.draws, problem.plant, len(problem.starts)), hold=problem.hold, horizon=problem.horizon
+        )
 
 
 def _check_places(problem: Problem, obstacles: Obstacles) -> None:

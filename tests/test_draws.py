@@ -124,6 +124,14 @@ WRONG = {
     "width": (lambda: problem(draws=Draws(np.ones((3, 1)))), "1 plant parameters; cart has 2"),
     "states": (lambda: problem(draws=Draws(noise=np.zeros((3, 1, 3)))), "expected (K, T, 2)"),
     "held": (lambda: problem(draws=Draws(delay=[0.1] * 3), hold=False), "a delay needs hold=True"),
+    "ragged delay": (
+        lambda: Draws(delay=[[0.1], [0.1, 0.2]]),
+        "delay must hold numbers in rows of equal length",
+    ),
+    "ragged table": (lambda: Draws(tables=[[0], [0, 1]]), "tables must hold numbers in rows of equal length"),
+    "ragged starts": (lambda: crossed([[0.0], [0.0, 1.0]], Draws()), "starts must hold numbers"),
+    "nan table": (lambda: Draws(tables=[np.nan]), "1 integers from 0 to 0"),
+    "endless": (lambda: problem(draws=Draws(delay=[1e12] * 3)), "longer than the horizon, 30.0 s"),
     "other": (lambda: problem(draws=0.1), "draws must be Draws or None, got 0.1"),
     "noise": (
         lambda: random_draws(cart(), np.random.default_rng(1), 2, noise=[-1.0, 0.0]),

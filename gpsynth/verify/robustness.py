@@ -98,7 +98,7 @@ def assess(
     """How `law` does on `problem` and on harder ones; its plant may be another one, if it sees the same features.
 
     The bound takes the runs as independent: give each row a start and a draw of its own, none of which the law was
-    found on. Rows that share a draw (`crossed`) show its effect more clearly, but count for less than they are.
+    found on. Rows that share a draw (`crossed`) show its effect more clearly, but then the bound is too high.
     Raises ProblemError if law and problem do not fit, or a setting makes no sense.
     """
     if not 0.0 < confidence < 1.0:
