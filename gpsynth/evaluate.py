@@ -68,8 +68,12 @@ class Evaluator:
         if not 0.0 <= self.margin < np.inf:
             raise ProblemError(f"the margin must be finite and at least 0 m, got {self.margin}")
 
-    def of_program(self, program: Program, parameters: Floats) -> Rollouts:
-        """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p)."""
+    def of_program(self, program: Program, parameters: Floats, *, bound: float = np.inf) -> Rollouts:
+        """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p).
+
+        What of one vector costs more than `bound` in the mean over the starts need not be rolled out to the end: it
+        ends early where costs cannot be negative, and costs infinity.
+        """
         problem = self.problem
         if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
             raise ProblemError(
@@ -81,7 +85,9 @@ class Evaluator:
             raise ProblemError(
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
-        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors))
+        bounded = len(vectors) == 1 and problem.costs_nonnegative
+        total = bound * len(problem.starts) if bounded else np.inf
+        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors), total)
 
     def of_schedules(
         self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None, *, reach: float = 0.0
@@ -114,7 +120,13 @@ class Evaluator:
         return _Plans(places, np.cumsum(times, axis=1), reach)
 
     def _roll(
-        self, program: Program, vectors: Floats, plans: _Plans, horizon: float, candidates: int
+        self,
+        program: Program,
+        vectors: Floats,
+        plans: _Plans,
+        horizon: float,
+        candidates: int,
+        bound: float = np.inf,
     ) -> Rollouts:
         """One candidate a parameter vector, or a plan."""
         starts = len(self.problem.starts)
@@ -130,7 +142,7 @@ class Evaluator:
             points=np.ascontiguousarray(plans.points, dtype=np.float64),
             ends=np.ascontiguousarray(plans.ends, dtype=np.float64),
         )
-        result = roll(self, program, sealed(lanes), horizon, _NO_TRACE, plans.reach)
+        result = roll(self, program, sealed(lanes), horizon, _NO_TRACE, plans.reach, bound)
         return _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
 
     @cached_property
@@ -187,7 +199,7 @@ class Evaluator:
         problem, tableau = self.problem, TABLEAUS[self.problem.method]
         substeps = round(problem.period / problem.step)
         flags = (problem.hold, problem.stop)
-        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0)
+        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0, np.inf)
 
     @cached_property
     def goals(self) -> Floats:
@@ -196,13 +208,19 @@ class Evaluator:
 
 
 def roll(
-    evaluator: Evaluator, program: Program, lanes: Lanes, horizon: float, trace: Floats, reach: float = 0.0
+    evaluator: Evaluator,
+    program: Program,
+    lanes: Lanes,
+    horizon: float,
+    trace: Floats,
+    reach: float = 0.0,
+    bound: float = np.inf,
 ) -> Floats:
     """The kernel's result (L, ...) for these lanes, computed in slices of whole blocks by the evaluator's threads."""
     if not reach >= 0.0:
         raise ProblemError(f"the reach must be at least 0, got {reach}")
     rows, code = pack(evaluator.frame, instructions(program), len(program.parameters))
-    clock = evaluator.clock._replace(periods=periods_of(evaluator.problem, horizon), reach=reach)
+    clock = evaluator.clock._replace(periods=periods_of(evaluator.problem, horizon), reach=reach, bound=bound)
     total, block = len(lanes.picks), evaluator.block
     states, terminals = lanes.starts.shape[1], len(code.arrival) - 1
     result = np.empty((total, rollout.TERMINAL + terminals + states))

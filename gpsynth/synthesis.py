@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from typing import Any, TypeVar
 
@@ -13,6 +14,7 @@ from gpsynth.arrays import Floats
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
 from gpsynth.optimizers import CMAES, Progress, minimize
 from gpsynth.problem import Problem
@@ -74,6 +76,7 @@ def synthesize(
     search: StructureSearch[G] | None = None,
     rough: Problem | None = None,
     trials: Sequence[Problem] = (),
+    islands: Islands | None = None,
     threads: int = 2,
     progress: bool = False,
     callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
@@ -88,10 +91,22 @@ def synthesize(
     problem's features and controls.
     """
     check_encoding(problem, encoding)
-    cost = batch_cost(Evaluator(rough or problem), threads)
     strategy = search or StructureSearch(encoding)
-    found = minimize(
-        cost, strategy, seed=seed, budget=budget, path=(SEARCH,), progress=progress, callback=callback
+    arguments: Any = {"seed": seed, "budget": budget, "path": (SEARCH,)}
+    found = (
+        minimize(
+            BatchCost(rough or problem, threads), strategy, **arguments, progress=progress, callback=callback
+        )
+        if islands is None
+        else search_islands(
+            BatchCost(rough or problem),
+            strategy,
+            islands,
+            **arguments,
+            workers=threads,
+            progress=progress,
+            callback=callback,
+        )
     )
     evaluators = [Evaluator(each) for each in (problem, *trials)]
 
@@ -120,20 +135,32 @@ def costs_of(rollouts: Rollouts) -> Floats:
     return np.where(np.isfinite(total), total, np.inf)
 
 
-def batch_cost(evaluator: Evaluator, threads: int) -> Callable[[Sequence[Candidate[Any]]], Floats]:
+@dataclass(frozen=True, eq=False)
+class BatchCost:
     """The cost function of a structure search: candidates with one program go to the kernel together."""
 
-    def cost(batch: Sequence[Candidate[Any]]) -> Floats:
+    problem: Problem
+    threads: int = 1
+
+    def __call__(self, batch: Sequence[Candidate[Any]]) -> Floats:
+        """Costs (N, S) of N candidates."""
         groups = [list(group) for _, group in groupby(batch, key=lambda candidate: id(candidate.program))]
 
         def of_group(group: list[Candidate[Any]]) -> Floats:
             values = np.array([candidate.values for candidate in group]).reshape(len(group), -1)
-            return costs_of(evaluator.of_program(group[0].program, values))
+            bound = max(candidate.bound for candidate in group)
+            return costs_of(self.evaluator.of_program(group[0].program, values, bound=bound))
 
-        with ThreadPoolExecutor(threads) as pool:
+        with ThreadPoolExecutor(self.threads) as pool:
             return np.concatenate(list(pool.map(of_group, groups)))
 
-    return cost
+    def __reduce__(self) -> tuple[type["BatchCost"], tuple[Problem, int]]:
+        return BatchCost, (self.problem, self.threads)
+
+    @cached_property
+    def evaluator(self) -> Evaluator:
+        """One of each process: what it caches would not survive the way to another."""
+        return Evaluator(self.problem)
 
 
 def _tuned(

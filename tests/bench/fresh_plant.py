@@ -12,7 +12,7 @@ from gpsynth.optimizers import minimize
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import batch_cost
+from gpsynth.synthesis import BatchCost
 from tests.bench.measure import REPEATS
 
 STARTS = 8
@@ -46,6 +46,6 @@ def _first_generation(seed: int) -> int:
     encoding = TreeEncoding(problem.features.names, plant.control_names, OPERATIONS, ParameterSpace(4))
     search = StructureSearch(encoding)
     found = minimize(
-        batch_cost(Evaluator(problem), 1), search, seed=seed, budget=100_000, callback=lambda _: True
+        BatchCost(problem), search, seed=seed, budget=100_000, callback=lambda _: True
     )
     return found.evaluations
