@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from gpsynth.builder import Builder, bind, compose, simplify
     from gpsynth.draws import Draws, crossed, random_draws
     from gpsynth.encodings.cartesian import CartesianEncoding
-    from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
     from gpsynth.encodings.tree import TreeEncoding
+    from gpsynth.encodings.variational import VariationalEncoding
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
@@ -39,7 +39,7 @@ _HOME = {
     "crossed": "draws",
     "random_draws": "draws",
     "CartesianEncoding": "encodings.cartesian",
-    "NetworkOperatorEncoding": "encodings.network_operator",
+    "VariationalEncoding": "encodings.variational",
     "ParameterSpace": "encodings.parameters",
     "TreeEncoding": "encodings.tree",
     "Evaluator": "evaluate",
@@ -83,7 +83,6 @@ __all__ = [
     "Evaluator",
     "GpsynthError",
     "Law",
-    "NetworkOperatorEncoding",
     "Obstacles",
     "ParameterSpace",
     "Plan",
@@ -99,6 +98,7 @@ __all__ = [
     "SynthesisResult",
     "Trajectory",
     "TreeEncoding",
+    "VariationalEncoding",
     "__version__",
     "assess",
     "bind",

@@ -262,15 +262,15 @@ def read_plant_file(path: Path) -> tuple["Problem", "Encoding[Any] | None"]:
 def named_encoding(name: EncodingName, problem: "Problem") -> "Encoding[Any]":
     """An encoding for the problem's features and controls, with operations of general use."""
     from gpsynth.encodings.cartesian import CartesianEncoding
-    from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
     from gpsynth.encodings.tree import TreeEncoding
+    from gpsynth.encodings.variational import VariationalEncoding
 
     inputs, outputs = problem.features.names, problem.plant.control_names
     operations = ("add", "sub", "mul", "div_protected", "sin", "cos", "tanh", "sqrt_protected", "min", "max")
     space = ParameterSpace(count=8)
     if name == "network-operator":
-        return NetworkOperatorEncoding(inputs, outputs, space=space)
+        return VariationalEncoding(inputs, outputs, space=space)
     if name == "cartesian":
         return CartesianEncoding(inputs, outputs, operations, space)
     return TreeEncoding(inputs, outputs, operations, space)

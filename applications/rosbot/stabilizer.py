@@ -10,9 +10,9 @@ from applications.rosbot.model import STATES, STEP, Pose, features, reached, uni
 from gpsynth.arrays import Floats
 from gpsynth.draws import Draws
 from gpsynth.encodings.cartesian import CartesianEncoding
-from gpsynth.encodings.network_operator import NetworkOperatorEncoding
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.errors import EncodingError
 from gpsynth.law import Law
 from gpsynth.optimizers import Progress
@@ -141,5 +141,5 @@ def _encoding(name: str, problem: Problem) -> Any:
     if name == "cartesian":
         return CartesianEncoding(inputs, outputs, OPERATIONS, space)
     if name == "network-operator":
-        return NetworkOperatorEncoding(inputs, outputs, space=ParameterSpace(len(inputs), -10.0, 10.0))
+        return VariationalEncoding(inputs, outputs, space=ParameterSpace(len(inputs), -10.0, 10.0))
     raise EncodingError(f"encoding must be tree, cartesian or network-operator, not {name!r}")

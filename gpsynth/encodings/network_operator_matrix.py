@@ -4,8 +4,8 @@ Off the diagonal stands the unary function on the edge from row to column, on it
 gathers its edges; 0 is no edge, or a source. Numbers are those of the 2022 library, binary functions from 1.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial, reduce
 from itertools import chain
 
@@ -14,11 +14,18 @@ import numpy as np
 from gpsynth.arrays import Ints, frozen
 from gpsynth.builder import Builder, Reference
 from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.solution import Functions, Variation
+from gpsynth.encodings.variations import IDENTITY, is_variation, random_variation, vary
 from gpsynth.errors import EncodingError
-from gpsynth.operations import BINARY_BY_NUMBER, UNARY_BY_NUMBER
+from gpsynth.operations import BINARY_BY_NUMBER, UNARY_BY_NUMBER, operation
 from gpsynth.program import Program
 
 MOST_NODES = 512
+ADD, IDENTITY_EDGE = 1, 1  # numbers of a binary and a unary function
+ROBOT_OPERATIONS: tuple[str, ...] = (
+    *(UNARY_BY_NUMBER[number].name for number in (*range(1, 20), 23)),
+    *(BINARY_BY_NUMBER[number].name for number in (1, 2)),
+)  # those of the mobile robots, 2016 and 2022
 
 Edge = tuple[int, int]  # tail, number of the unary function
 
@@ -37,7 +44,7 @@ _STARTS_FREE_IF_BOUNDED = frozenset(("nop_mul", "max", "min", "prob_sum"))
 
 @dataclass(frozen=True, eq=False)
 class Matrix:
-    """A network operator and which of its nodes are what; raises EncodingError if it is not a valid one."""
+    """A network operator and which of its nodes are what, a `Solution`; raises EncodingError if it is not valid."""
 
     psi: Ints  # (L, L)
     inputs: tuple[int, ...]  # source nodes, in the order of the formula's inputs
@@ -64,8 +71,62 @@ class Matrix:
     def __hash__(self) -> int:
         return hash(self._content())
 
+    @property
+    def entries(self) -> Ints:
+        """The matrix, (L, L)."""
+        return self.psi
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """How many inputs, parameters and outputs the formula has."""
+        return len(self.inputs), len(self.parameters), len(self.outputs)
+
+    @property
+    def identity(self) -> Variation:
+        """(0, 0, 0, 0)."""
+        return IDENTITY
+
+    def functions(self, operations: tuple[str, ...]) -> Functions:
+        """Numbers of the unary and of the binary functions; raises EncodingError for one without a number."""
+        return numbered(operations)
+
+    def draw(self, entries: Ints, functions: Functions, rng: np.random.Generator) -> Variation:
+        """One of four kinds of change: a unary or a binary function, an edge more, an edge less."""
+        return random_variation(entries, functions, rng)
+
+    def varied(self, entries: Ints, variations: tuple[Variation, ...]) -> Ints:
+        """A copy of the entries after these variations; those whose guard fails are passed over."""
+        return vary(entries, variations)
+
+    def contains(self, variation: Variation, functions: Functions) -> bool:
+        """Whether `draw` could have given this variation, or it is the identity."""
+        return is_variation(variation, len(self.psi), functions)
+
+    def with_entries(self, entries: Ints) -> "Matrix":
+        """The same nodes under other functions; raises EncodingError if it is not a valid operator."""
+        return replace(self, psi=entries)
+
+    def program(self, entries: Ints, inputs: tuple[str, ...], outputs: tuple[str, ...]) -> Program:
+        """The formula of valid entries; nodes start with their first edge, not with their unit."""
+        return _program(entries, self, inputs, outputs, strict=False)
+
     def _content(self) -> tuple[object, ...]:
         return self.psi.shape, self.psi.tobytes(), self.inputs, self.parameters, self.outputs
+
+
+def numbered(operations: tuple[str, ...]) -> Functions:
+    """Network-operator numbers of the unary and of the binary functions among these operations.
+
+    Edges and nodes need one each, so the identity and addition stand in where none is offered. Raises EncodingError
+    for an operation without a number.
+    """
+    rows = [operation(name) for name in operations]
+    for row in rows:
+        if row.unary_number is None and row.binary_number is None:
+            raise EncodingError(f"{row.name} is not a function of the network operator")
+    unary = tuple(row.unary_number for row in rows if row.unary_number is not None)
+    binary = tuple(row.binary_number for row in rows if row.binary_number is not None)
+    return unary or (IDENTITY_EDGE,), binary or (ADD,)
 
 
 def decode_matrix(
@@ -86,16 +147,15 @@ def decode_matrix(
     for kind, given, nodes in (("inputs", names, matrix.inputs), ("outputs", results, matrix.outputs)):
         if len(given) != len(nodes):
             raise EncodingError(f"the matrix has {len(nodes)} {kind}, but {len(given)} names were given")
-    return decode_entries(matrix.psi, matrix, names, results, strict=strict)
+    return _program(matrix.psi, matrix, names, results, strict=strict)
 
 
-def decode_entries(
-    psi: Ints, nodes: Matrix, inputs: tuple[str, ...], outputs: tuple[str, ...], *, strict: bool
-) -> Program:
-    """As `decode_matrix`, of entries known to be valid; `nodes` says which node is what."""
-    builder = Builder(inputs, ParameterSpace.names(len(nodes.parameters)))
-    edges = _edges(psi, nodes.outputs)
-    values = dict(zip(nodes.inputs + nodes.parameters, builder.inputs + builder.parameters, strict=True))
+def node_values(
+    builder: Builder, psi: Ints, sources: Mapping[int, Reference], wanted: Sequence[int], *, strict: bool
+) -> dict[int, Reference]:
+    """The values of the `wanted` nodes of valid entries, and of the nodes they need; `sources` are known."""
+    edges = _edges(psi, wanted)
+    values = dict(sources)
     bounded: set[int] = set()
     for node in edges:
         function = BINARY_BY_NUMBER[int(psi[node, node])]
@@ -106,10 +166,20 @@ def decode_entries(
         values[node] = reduce(partial(builder.apply, name), chain(unit, terms))
         if name in _BOUNDED or (len(edges[node]) == 1 and _is_bounded(first, bounded)):
             bounded.add(node)
+    return values
+
+
+def _program(
+    psi: Ints, nodes: Matrix, inputs: tuple[str, ...], outputs: tuple[str, ...], *, strict: bool
+) -> Program:
+    """As `decode_matrix`, of entries known to be valid; `nodes` says which node is what."""
+    builder = Builder(inputs, ParameterSpace.names(len(nodes.parameters)))
+    sources = zip(nodes.inputs + nodes.parameters, builder.inputs + builder.parameters, strict=True)
+    values = node_values(builder, psi, dict(sources), nodes.outputs, strict=strict)
     return builder.build([values[node] for node in nodes.outputs], outputs)
 
 
-def _edges(psi: Ints, outputs: tuple[int, ...]) -> dict[int, list[Edge]]:
+def _edges(psi: Ints, outputs: Sequence[int]) -> dict[int, list[Edge]]:
     """The incoming edges of every node that outputs need and that is no source; nodes and tails ascend."""
     heads, tails = np.nonzero(psi.T)
     incoming: dict[int, list[Edge]] = {}

@@ -6,10 +6,10 @@ from collections.abc import Callable
 import numpy as np
 
 from gpsynth.encodings.cartesian import CartesianEncoding, CartesianGenome
-from gpsynth.encodings.network_operator import NetworkOperatorEncoding
 from gpsynth.encodings.network_operator_matrix import Matrix
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.operations import GP_NAMES, operation
 
 PLAIN = ("add", "sub", "mul", "square", "sin", "tanh")
@@ -18,17 +18,17 @@ UNARY = ("sin", "neg", "atan")
 NUMBERS = ParameterSpace(3, -4.0, 4.0)
 
 ENCODINGS = {
-    "network-operator": NetworkOperatorEncoding(("x", "y", "z"), ("u", "v"), space=NUMBERS),
-    "network-operator-gray": NetworkOperatorEncoding(("x", "y"), ("u",), NETWORK, NUMBERS, gray_bits=16),
-    "network-operator-no-numbers": NetworkOperatorEncoding(("x", "y"), ("u", "v"), NETWORK),
-    "network-operator-all": NetworkOperatorEncoding(
+    "network-operator": VariationalEncoding(("x", "y", "z"), ("u", "v"), space=NUMBERS),
+    "network-operator-gray": VariationalEncoding(("x", "y"), ("u",), NETWORK, NUMBERS, gray_bits=16),
+    "network-operator-no-numbers": VariationalEncoding(("x", "y"), ("u", "v"), NETWORK),
+    "network-operator-all": VariationalEncoding(
         ("x",),
         ("u",),
         (*NETWORK, "max", "min", "prob_sum", "signed_hypot", "signed_abs_max", "nop_exp"),
         NUMBERS,
         n_variations=20,
     ),
-    "network-operator-unary": NetworkOperatorEncoding(("x",), ("u",), UNARY),
+    "network-operator-unary": VariationalEncoding(("x",), ("u",), UNARY),
     "cartesian": CartesianEncoding(("x", "y", "z"), ("u", "v"), GP_NAMES, NUMBERS),
     "cartesian-rate": CartesianEncoding(
         ("x", "y"), ("u",), PLAIN, NUMBERS, columns=20, gene_rate=0.05, cut="one_point"

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from gpsynth.encodings.cartesian import CartesianEncoding
-from gpsynth.encodings.network_operator import NetworkOperatorEncoding
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.errors import EncodingError
 from gpsynth.operations import GP_NAMES, OPERATIONS
 from gpsynth.seeds import stream
@@ -150,7 +150,7 @@ def test_mutation_moves_numbers_and_structure_apart(encoding):
 
 
 SEARCHERS = {
-    "network-operator": NetworkOperatorEncoding(("x",), ("u",), NETWORK, ParameterSpace(2, -4, 4)),
+    "network-operator": VariationalEncoding(("x",), ("u",), NETWORK, ParameterSpace(2, -4, 4)),
     "cartesian": CartesianEncoding(("x",), ("u",), PLAIN, ParameterSpace(2, -4, 4), columns=20),
     "tree": TreeEncoding(("x",), ("u",), PLAIN, ParameterSpace(4, -4, 4)),
 }
@@ -187,7 +187,7 @@ def wrong(**changes):
     return {"inputs": ("x",), "outputs": ("u",), "operations": ("sin", "add"), **changes}
 
 
-@pytest.mark.parametrize("kind", [NetworkOperatorEncoding, CartesianEncoding, TreeEncoding])
+@pytest.mark.parametrize("kind", [VariationalEncoding, CartesianEncoding, TreeEncoding])
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
