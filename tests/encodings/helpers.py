@@ -6,6 +6,9 @@ from collections.abc import Callable
 import numpy as np
 
 from gpsynth.encodings.cartesian import CartesianEncoding, CartesianGenome
+from gpsynth.encodings.columns import basic_columns
+from gpsynth.encodings.complete_tree import basic_tree
+from gpsynth.encodings.layers import basic_layers
 from gpsynth.encodings.network_operator_matrix import Matrix
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
@@ -29,6 +32,18 @@ ENCODINGS = {
         n_variations=20,
     ),
     "network-operator-unary": VariationalEncoding(("x",), ("u",), UNARY),
+    "layers": VariationalEncoding(
+        ("x", "y", "z"), ("u", "v"), NETWORK, NUMBERS, basic_layers(3, 3, 2, per_layer=2)
+    ),
+    "layers-no-numbers": VariationalEncoding(("x",), ("u",), NETWORK, basis=basic_layers(1, 0, 1)),
+    "complete-tree": VariationalEncoding(
+        ("x", "y", "z"), ("u", "v"), (*PLAIN, "max"), NUMBERS, basic_tree(3, 3, 2, (*PLAIN, "max"))
+    ),
+    "complete-tree-unary": VariationalEncoding(("x",), ("u",), UNARY, basis=basic_tree(1, 0, 1)),
+    "columns": VariationalEncoding(
+        ("x", "y", "z"), ("u", "v"), GP_NAMES, NUMBERS, basic_columns(3, 3, 2, operands=3)
+    ),
+    "columns-no-numbers": VariationalEncoding(("x",), ("u", "v"), PLAIN, basis=basic_columns(1, 0, 2)),
     "cartesian": CartesianEncoding(("x", "y", "z"), ("u", "v"), GP_NAMES, NUMBERS),
     "cartesian-rate": CartesianEncoding(
         ("x", "y"), ("u",), PLAIN, NUMBERS, columns=20, gene_rate=0.05, cut="one_point"
