@@ -286,7 +286,7 @@ def recorder(folder: "Run", problem: "Problem") -> Callable[["Progress[SearchSta
             "synthesis", generation=progress.generation, evaluations=progress.evaluations, best_cost=cost
         )
         if evaluations == progress.evaluations:
-            best = progress.state.population[0]
+            best = progress.state.front[-1]
             Law(problem.plant, problem.features, best.program, best.values).save(folder.folder / "law.json")
 
     return record

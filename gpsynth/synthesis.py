@@ -16,10 +16,10 @@ from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
-from gpsynth.optimizers import CMAES, Progress, minimize
+from gpsynth.optimizers import CMAES, Progress, Search, minimize
 from gpsynth.problem import Problem
 from gpsynth.program import Program
-from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch
+from gpsynth.structure_search import Candidate, Individual, StructureSearch
 
 G = TypeVar("G")
 
@@ -73,13 +73,13 @@ def synthesize(
     seed: int = 0,
     budget: int = 20_000,
     tuning: int = 2_000,
-    search: StructureSearch[G] | None = None,
+    search: Search[Any, tuple[Candidate[G], ...], Individual[G] | None] | None = None,
     rough: Problem | None = None,
     trials: Sequence[Problem] = (),
     islands: Islands | None = None,
     threads: int = 2,
     progress: bool = False,
-    callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
+    callback: Callable[[Progress[Any]], bool | None] | None = None,
 ) -> SynthesisResult:
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
@@ -87,8 +87,8 @@ def synthesize(
     problem (fewer starts, longer steps); every law of the front is tuned on `problem` itself, with at most `tuning`
     evaluations. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps,
     another plant), which no search has seen, so that a law that only fits its training loses. The same seed gives
-    the same result for any number of threads. Raises ProblemError if the encoding's inputs and outputs are not the
-    problem's features and controls.
+    the same result for any number of threads. `search` is a StructureSearch, Epochs or a VariationalGA of this
+    encoding. Raises ProblemError if the encoding's inputs and outputs are not the problem's features and controls.
     """
     check_encoding(problem, encoding)
     strategy = search or StructureSearch(encoding)
