@@ -201,7 +201,9 @@ def _joined(state: VariationalState, children: Sequence[Member], functionals: Fl
         rank = int(dominates(known, row).sum())
         if rank < ranks[worst]:
             ranks += dominates(row, known).astype(np.int32) - dominates(known[worst], known).astype(np.int32)
-            ranks[worst] = rank - int(dominates(known[worst], row))
+            ranks[worst] = (
+                rank  # the worst is not among those that dominate the child, or it would rank better
+            )
             population[worst], known[worst] = child, row
     return replace(state, population=tuple(population), functionals=frozen(known), ranks=frozen(ranks))
 

@@ -52,7 +52,7 @@ def test_the_basis_is_the_best_member_of_the_epoch_before(encoding):
 
 def test_nothing_that_was_found_is_lost():
     search = epochs(NETWORK)
-    result = minimize(errors, search, seed=2, budget=2_000)
+    result = minimize(errors, search, seed=2, budget=700)
     best = [cost for _, cost in result.history]
     assert best == sorted(best, reverse=True)
     assert result.cost == result.state.front[-1].cost == errors([result.x]).mean()
@@ -62,8 +62,8 @@ def test_an_epoch_reaches_what_no_list_of_variations_can():
     start = np.mean(errors([_basic(NETWORK)]))
     fixed = VariationalEncoding(("a", "b"), ("y",), NETWORK.operations, SPACE, n_variations=1)
     search = StructureSearch(fixed, population=20, offspring=10, tuned=1)
-    one = minimize(errors, search, seed=3, budget=500).cost
-    many = minimize(errors, Epochs(search, every=3), seed=3, budget=500).cost
+    one = minimize(errors, search, seed=3, budget=400).cost
+    many = minimize(errors, Epochs(search, every=3), seed=3, budget=400).cost
     assert many < one < start
 
 
@@ -75,7 +75,7 @@ def _basic(encoding):
 
 
 def test_same_seed_same_search():
-    first, second = (minimize(errors, epochs(NETWORK), seed=6, budget=800) for _ in range(2))
+    first, second = (minimize(errors, epochs(NETWORK), seed=6, budget=400) for _ in range(2))
     assert first.history == second.history
 
 

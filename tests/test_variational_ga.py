@@ -98,7 +98,7 @@ def trimmed(encoding, genome, count):
 
 
 def test_it_improves_on_its_first_population():
-    result = minimize(errors, SMALL, seed=3, budget=4_000)
+    result = minimize(errors, SMALL, seed=3, budget=2_000)
     first = min(np.mean(errors(batch), axis=1).min() for batch, _ in states(SMALL, 1, seed=3))
     assert result.cost < 0.2 * first
     assert errors([result.x]).mean() == result.cost
