@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from gpsynth.encodings.parameters import ParameterSpace
     from gpsynth.encodings.tree import TreeEncoding
     from gpsynth.encodings.variational import VariationalEncoding
+    from gpsynth.epochs import Epochs
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
     from gpsynth.tracing import trace, where, wrap_angle
+    from gpsynth.variational_ga import VariationalGA
     from gpsynth.verify.robustness import Robustness, assess
     from gpsynth.verify.stress import Stress
 
@@ -39,9 +41,10 @@ _HOME = {
     "crossed": "draws",
     "random_draws": "draws",
     "CartesianEncoding": "encodings.cartesian",
-    "VariationalEncoding": "encodings.variational",
     "ParameterSpace": "encodings.parameters",
     "TreeEncoding": "encodings.tree",
+    "VariationalEncoding": "encodings.variational",
+    "Epochs": "epochs",
     "Evaluator": "evaluate",
     "Rollouts": "evaluate",
     "Law": "law",
@@ -67,6 +70,7 @@ _HOME = {
     "trace": "tracing",
     "where": "tracing",
     "wrap_angle": "tracing",
+    "VariationalGA": "variational_ga",
     "Robustness": "verify.robustness",
     "assess": "verify.robustness",
     "Stress": "verify.stress",
@@ -80,6 +84,7 @@ __all__ = [
     "CartesianEncoding",
     "DifferentialEvolution",
     "Draws",
+    "Epochs",
     "Evaluator",
     "GpsynthError",
     "Law",
@@ -99,6 +104,7 @@ __all__ = [
     "Trajectory",
     "TreeEncoding",
     "VariationalEncoding",
+    "VariationalGA",
     "__version__",
     "assess",
     "bind",

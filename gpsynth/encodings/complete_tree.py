@@ -4,7 +4,6 @@ From the root down stand 1 binary function, 2 unary, 2 binary, 4 unary ones, and
 2^(depth + 2) - 3 symbols, any of which can be replaced by any other of its level.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -123,8 +122,8 @@ class CompleteTree:
         leaves = [*builder.inputs, *builder.parameters, *map(builder.constant, self.units)]
         symbols = entries.tolist()
         values: dict[int, Reference] = {}
-        for place in sorted(self._below(self.outputs), reverse=True):
-            operands = [values[child] for child in self._children(place)]
+        for place, children in self._order:
+            operands = [values[child] for child in children]
             values[place] = applied(builder, symbols[place], operands) if operands else leaves[symbols[place]]
         return builder.build([values[place] for place in self.outputs], outputs)
 
@@ -154,14 +153,16 @@ class CompleteTree:
             return child, child + 1
         return (place + 2 ** (level + 1),)
 
-    def _below(self, places: Sequence[int]) -> set[int]:
-        waiting, found = list(places), set[int]()
+    @cached_property
+    def _order(self) -> tuple[tuple[int, tuple[int, ...]], ...]:
+        """The places that outputs need and their children, children first."""
+        waiting, found = list(self.outputs), dict[int, tuple[int, ...]]()
         while waiting:
             place = waiting.pop()
             if place not in found:
-                found.add(place)
-                waiting.extend(self._children(place))
-        return found
+                found[place] = self._children(place)
+                waiting.extend(found[place])
+        return tuple(sorted(found.items(), reverse=True))
 
     def _content(self) -> tuple[object, ...]:
         return self.entries.tobytes(), self.n_inputs, self.n_parameters, self.outputs, self.units
@@ -174,7 +175,7 @@ def basic_tree(
     operations: tuple[str, ...] = ("add", "mul"),
     depth: int | None = None,
 ) -> CompleteTree:
-    """The usual start: every output is q0 x0 + q1 x1 + ...; the rest of the leaves are zeros.
+    """The usual start: every output is q0 x0 + q1 x1 + ... + 0; the zeros are left for variations.
 
     Outputs are neighbors on one level and share nothing. Leaves can be the units of the `operations` too. One level
     more than the sums need, unless a `depth` is given.
@@ -193,10 +194,10 @@ def basic_tree(
     n_leaves = n_inputs + n_parameters
     zero, one = n_leaves, n_leaves + 1
     functions = [[ADD] * 2**k + [IDENTITY] * 2 ** (k + 1) for k in range(levels - 1)]
-    lowest = [MULTIPLY] * 2 ** (levels - 1) + [IDENTITY] * 2**levels
+    spare = 2 ** (levels - 1 - above) - n_inputs  # pairs of leaves under an output that no product takes
+    lowest = ([MULTIPLY] * n_inputs + [ADD] * spare) * 2**above + [IDENTITY] * 2**levels
     pairs = [(k, n_inputs + k if k < n_parameters else one) for k in range(n_inputs)]
-    under = 2 ** (levels - 1 - above)  # pairs of leaves under an output
-    leaves = [*pairs, *[(zero, zero)] * (under - n_inputs)] * 2**above
+    leaves = [*pairs, *[(zero, zero)] * spare] * 2**above
     symbols = [*chain.from_iterable(functions), *lowest, *chain.from_iterable(leaves)]
     first = 3 * 2**above - 3
     outputs = tuple(range(first, first + n_outputs))

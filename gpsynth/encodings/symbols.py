@@ -29,6 +29,8 @@ def functions_by_arity(operations: Sequence[str]) -> Functions:
 
 def applied(builder: Builder, symbol: int, operands: Sequence[Reference]) -> Reference:
     """The value of a function; an operand that is the function's unit element is left out."""
+    if symbol == IDENTITY:
+        return operands[0]
     row = OPERATIONS[symbol - 1]
     if row.unit is not None and len(operands) == 2:
         rest = [operand for operand in operands if builder.value_of(operand) != row.unit]
