@@ -75,6 +75,12 @@ def test_robustness_runs_as_printed(capsys):
     assert blocks("robustness.md", "text") == [capsys.readouterr().out]
 
 
+def test_a_published_matrix_is_varied_as_printed():
+    place: dict[str, object] = {}
+    for block in blocks("encodings.md", "python"):
+        exec(compile(block, "encodings.md", "exec"), place)
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_named_files_and_functions_exist(page):
     missing = [

@@ -6,6 +6,7 @@ median of its column (Mann-Whitney U, two-sided, Holm over the column); evaluati
 """
 
 import argparse
+import sys
 from collections.abc import Callable
 from statistics import median
 from types import MappingProxyType
@@ -88,7 +89,9 @@ def costs(problem: gs.Problem, search: Callable[[Names], Any], seeds: int, budge
     """The cost that each seed finds."""
     names = problem.features.names, tuple(problem.plant.control_names)
     cost = batch_cost(gs.Evaluator(problem), 1)
-    return [gs.minimize(cost, search(names), seed=seed, budget=budget).cost for seed in range(1, seeds + 1)]
+    found = [gs.minimize(cost, search(names), seed=seed, budget=budget).cost for seed in range(1, seeds + 1)]
+    print(problem.plant.name, np.round(sorted(found), 3).tolist(), file=sys.stderr, flush=True)
+    return found
 
 
 def chances(found: dict[str, list[float]]) -> dict[str, float]:
@@ -106,7 +109,7 @@ def main() -> None:
     """Print one row an encoding."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=7)
-    parser.add_argument("--budget", type=int, default=2_000)
+    parser.add_argument("--budget", type=int, default=1_500)
     arguments = parser.parse_args()
     cells: dict[str, list[str]] = {name: [] for name in SEARCHES}
     for make in PROBLEMS.values():
