@@ -12,7 +12,8 @@ from gpsynth.arrays import Ints, frozen
 from gpsynth.builder import Builder, Reference
 from gpsynth.encodings.checks import checked_at_least
 from gpsynth.encodings.network_operator_basis import basic_operator
-from gpsynth.encodings.network_operator_matrix import Matrix, node_values, numbered
+from gpsynth.encodings.network_operator_matrix import Matrix, numbered
+from gpsynth.encodings.network_operator_values import node_values
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.solution import Functions, Variation
 from gpsynth.encodings.variations import is_variation, random_variation, vary

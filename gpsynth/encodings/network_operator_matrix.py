@@ -4,15 +4,14 @@ Off the diagonal stands the unary function on the edge from row to column, on it
 gathers its edges; 0 is no edge, or a source. Numbers are those of the 2022 library, binary functions from 1.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial, reduce
-from itertools import chain
 
 import numpy as np
 
 from gpsynth.arrays import Ints, frozen
-from gpsynth.builder import Builder, Reference
+from gpsynth.builder import Builder
+from gpsynth.encodings.network_operator_values import node_values
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.solution import Functions, Variation
 from gpsynth.encodings.variations import IDENTITY, is_variation, random_variation, vary
@@ -26,20 +25,6 @@ ROBOT_OPERATIONS: tuple[str, ...] = (
     *(UNARY_BY_NUMBER[number].name for number in (*range(1, 20), 23)),
     *(BINARY_BY_NUMBER[number].name for number in (1, 2)),
 )  # those of the mobile robots, 2016 and 2022
-
-Edge = tuple[int, int]  # tail, number of the unary function
-
-# |value| <= 1e8 or NaN for any operand, so that starting nop_mul, max, min or prob_sum from the unit changes nothing
-_BOUNDED = frozenset(
-    (
-        *("nop_square", "tanh_half", "step", "sgn", "cos", "sin", "atan", "clip_unit", "signed_decay"),
-        *("signed_saturation", "sigmoid", "step_open", "sgn_dead_zone", "circle", "nop_mul"),
-    )
-)
-_KEEPS_BOUND = frozenset(("identity", "neg", "half"))
-# from their unit these start with the very value of the first edge, save that -0.0 becomes 0.0
-_STARTS_FREE = frozenset(("add", "signed_abs_sum", "signed_abs_max"))
-_STARTS_FREE_IF_BOUNDED = frozenset(("nop_mul", "max", "min", "prob_sum"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,25 +135,6 @@ def decode_matrix(
     return _program(matrix.psi, matrix, names, results, strict=strict)
 
 
-def node_values(
-    builder: Builder, psi: Ints, sources: Mapping[int, Reference], wanted: Sequence[int], *, strict: bool
-) -> dict[int, Reference]:
-    """The values of the `wanted` nodes of valid entries, and of the nodes they need; `sources` are known."""
-    edges = _edges(psi, wanted)
-    values = dict(sources)
-    bounded: set[int] = set()
-    for node in edges:
-        function = BINARY_BY_NUMBER[int(psi[node, node])]
-        name, first = function.name, edges[node][0]
-        free = name in _STARTS_FREE or (name in _STARTS_FREE_IF_BOUNDED and _is_bounded(first, bounded))
-        unit = [] if free or not strict or function.unit is None else [builder.constant(function.unit)]
-        terms = (_term(builder, UNARY_BY_NUMBER[number].name, values[tail]) for tail, number in edges[node])
-        values[node] = reduce(partial(builder.apply, name), chain(unit, terms))
-        if name in _BOUNDED or (len(edges[node]) == 1 and _is_bounded(first, bounded)):
-            bounded.add(node)
-    return values
-
-
 def _program(
     psi: Ints, nodes: Matrix, inputs: tuple[str, ...], outputs: tuple[str, ...], *, strict: bool
 ) -> Program:
@@ -177,30 +143,6 @@ def _program(
     sources = zip(nodes.inputs + nodes.parameters, builder.inputs + builder.parameters, strict=True)
     values = node_values(builder, psi, dict(sources), nodes.outputs, strict=strict)
     return builder.build([values[node] for node in nodes.outputs], outputs)
-
-
-def _edges(psi: Ints, outputs: Sequence[int]) -> dict[int, list[Edge]]:
-    """The incoming edges of every node that outputs need and that is no source; nodes and tails ascend."""
-    heads, tails = np.nonzero(psi.T)
-    incoming: dict[int, list[Edge]] = {}
-    for head, tail, number in zip(heads.tolist(), tails.tolist(), psi[tails, heads].tolist(), strict=True):
-        if tail != head:
-            incoming.setdefault(head, []).append((tail, number))
-    needed = set(outputs)
-    for node in reversed(incoming):
-        if node in needed:
-            needed.update(tail for tail, _ in incoming[node])
-    return {node: edges for node, edges in incoming.items() if node in needed}
-
-
-def _term(builder: Builder, name: str, value: Reference) -> Reference:
-    return value if name == "identity" else builder.apply(name, value)
-
-
-def _is_bounded(edge: Edge, bounded: set[int]) -> bool:
-    tail, number = edge
-    name = UNARY_BY_NUMBER[number].name
-    return name in _BOUNDED or (name in _KEEPS_BOUND and tail in bounded)
 
 
 def _check_nodes(matrix: Matrix) -> None:

@@ -166,6 +166,30 @@ def test_each_variation_of_a_random_genome_changes_the_matrix():
         assert not any(np.array_equal(a, b) for a, b in pairwise(stages))
 
 
+def test_trimming_keeps_the_first_variations():
+    genome = ROBOT.random(stream(11))
+    for count in range(9):
+        trimmed = ROBOT.trimmed(genome, count)
+        ROBOT.check(trimmed)
+        assert np.array_equal(
+            ROBOT.rebased(trimmed).basis.psi, vary(ROBOT.basis.psi, genome.variations[:count])
+        )
+        assert trimmed.values == genome.values
+
+
+@pytest.mark.parametrize("name", ["network-operator", "network-operator-gray", "network-operator-no-numbers"])
+def test_a_double_mutation_changes_one_variation_and_one_number(name):
+    encoding, rng = ENCODINGS[name], stream(12)
+    for _ in range(50):
+        genome = encoding.random(rng)
+        child = encoding.mutate_both(genome, rng)
+        encoding.check(child)
+        pairs = zip(genome.variations, child.variations, strict=True)
+        assert sum(a != b for a, b in pairs) <= 1
+        moved = sum(a != b for a, b in zip(genome.values, child.values, strict=True))
+        assert moved == min(1, len(genome.values))
+
+
 def test_four_children_share_out_structure_and_numbers():
     rng = stream(7)
     a, b = ROBOT.random(rng), ROBOT.random(rng)
