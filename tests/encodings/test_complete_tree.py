@@ -4,12 +4,15 @@ import numpy as np
 import pytest
 
 from gpsynth.encodings.complete_tree import CompleteTree, basic_tree
+from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.symbols import function_of, symbol_of
 from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.errors import EncodingError
 from gpsynth.kernels import elementary
+from gpsynth.optimizers import minimize
 from gpsynth.seeds import stream
-from tests.encodings.helpers import ENCODINGS
+from gpsynth.structure_search import StructureSearch
+from tests.encodings.helpers import ENCODINGS, PLAIN
 
 IDENTITY = symbol_of("identity")
 
@@ -113,3 +116,19 @@ def test_foreign_variations_are_refused(variation):
     genome = encoding.basic()
     with pytest.raises(EncodingError, match="variation 0 is"):
         encoding.check(replace(genome, variations=(variation, *genome.variations[1:])))
+
+
+def test_a_search_finds_more_than_the_slope_of_a_curve():
+    space = ParameterSpace(2, -4, 4)
+    encoding = VariationalEncoding(
+        ("x",), ("u",), PLAIN, space, basic_tree(1, 2, 1, depth=3), n_variations=12
+    )
+    x = np.linspace(-1.5, 1.5, 21)
+    wanted = x**3 - 2.0 * x
+    line = np.mean((wanted - np.polyval(np.polyfit(x, wanted, 1), x)) ** 2)
+
+    def costs(batch):
+        return np.array([(each.program(x[:, None], each.values)[:, 0] - wanted) ** 2 for each in batch])
+
+    search = StructureSearch(encoding, population=60, offspring=30)
+    assert minimize(costs, search, seed=1, budget=2_000, target=line / 6).cost < line / 5

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gpsynth.encodings.cartesian import CartesianEncoding
+from gpsynth.encodings.layers import basic_layers
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.encodings.variational import VariationalEncoding
@@ -159,6 +160,7 @@ def test_mutation_moves_numbers_and_structure_apart(encoding):
 
 SEARCHERS = {
     "network-operator": VariationalEncoding(("x",), ("u",), NETWORK, ParameterSpace(2, -4, 4)),
+    "layers": VariationalEncoding(("x",), ("u",), NETWORK, ParameterSpace(2, -4, 4), basic_layers(1, 2, 1)),
     "cartesian": CartesianEncoding(("x",), ("u",), PLAIN, ParameterSpace(2, -4, 4), columns=20),
     "tree": TreeEncoding(("x",), ("u",), PLAIN, ParameterSpace(4, -4, 4)),
 }
