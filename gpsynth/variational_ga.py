@@ -34,9 +34,8 @@ class VariationalState:
     encoding: VariationalEncoding  # its basis is that of the present epoch
     population: tuple[Member, ...] = ()  # the first is the basis itself
     functionals: Floats = field(default_factory=lambda: frozen(np.empty((0, 0))))  # (population, k)
-    ranks: Ints = field(
-        default_factory=lambda: frozen(np.empty(0, np.int32))
-    )  # by how many each is dominated
+    # by how many members each is dominated, (population,)
+    ranks: Ints = field(default_factory=lambda: frozen(np.empty(0, np.int32)))
     front: tuple[Member, ...] = ()  # over (complexity, cost), of all epochs
     generation: int = 0  # of couples
     turn: Turn = "population"
@@ -129,10 +128,8 @@ class VariationalGA:
         children: list[VariationalGenome] = []
         while not children:  # ends, since a member that none dominates is always crossed
             for _ in range(self.couples):
-                first = min(
-                    rng.integers(self.population, size=1 + self.picks), key=lambda i: int(state.ranks[i])
-                )
-                second = rng.integers(self.population)
+                picks = rng.integers(self.population, size=1 + self.picks)
+                first, second = picks[np.argmin(state.ranks[picks])], rng.integers(self.population)
                 if rng.random() < max(self._readiness(int(state.ranks[i])) for i in (first, second)):
                     a, b = state.population[first].genome, state.population[second].genome
                     children += state.encoding.children(a, b, rng)
@@ -180,7 +177,7 @@ class VariationalGA:
                 if np.all(rows[count] <= rows[last]):
                     last = count
             population[pick], known[pick] = prefixes[last], rows[last]
-        return replace(state, population=tuple(population), functionals=known, ranks=domination_ranks(known))
+        return _ranked(state, population, known)
 
 
 def _candidate(encoding: VariationalEncoding, genome: VariationalGenome) -> Candidate[VariationalGenome]:
@@ -201,9 +198,7 @@ def _joined(state: VariationalState, children: Sequence[Member], functionals: Fl
         rank = int(dominates(known, row).sum())
         if rank < ranks[worst]:
             ranks += dominates(row, known).astype(np.int32) - dominates(known[worst], known).astype(np.int32)
-            ranks[worst] = (
-                rank  # the worst is not among those that dominate the child, or it would rank better
-            )
+            ranks[worst] = rank  # the worst does not dominate the child, or it would have the lower rank
             population[worst], known[worst] = child, row
     return replace(state, population=tuple(population), functionals=frozen(known), ranks=frozen(ranks))
 
