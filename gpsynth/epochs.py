@@ -35,6 +35,7 @@ class Epochs(Generic[G]):
 
     search: StructureSearch[G]
     every: int = 10
+    seeds: tuple[G, ...] = ()  # formulas to begin with, beside those of the search
 
     def __post_init__(self) -> None:
         if self.every < 1:
@@ -45,7 +46,8 @@ class Epochs(Generic[G]):
 
     def init(self, rng: np.random.Generator) -> EpochState[G]:
         """The first epoch, of which nothing is known yet."""
-        return EpochState(self.search, self.search.init(rng))
+        search = replace(self.search, seeds=(*self.search.seeds, *self.seeds))
+        return EpochState(search, search.init(rng))
 
     def ask(
         self, state: EpochState[G], rng: np.random.Generator

@@ -59,6 +59,7 @@ class VariationalGA:
     epoch: int = 10  # generations; 0 keeps the basis
     elite: int = 10
     functionals: Callable[[Floats], Floats] = mean_and_worst  # of costs (n, S), (n, k)
+    seeds: tuple[VariationalGenome, ...] = ()  # formulas to begin with, beside the basis
 
     def __post_init__(self) -> None:
         least = {"population": 2, "couples": 1, "picks": 0, "epoch": 0, "elite": 0}
@@ -88,8 +89,9 @@ class VariationalGA:
             encoding, genomes = self._next_epoch(state, rng)
             state = replace(state, encoding=encoding)
         else:
-            others = (self.encoding.random(rng) for _ in range(self.population - 1))
-            genomes = [self.encoding.basic(), *others]
+            given = self.seeds[: self.population - 1]
+            others = (self.encoding.random(rng) for _ in range(self.population - 1 - len(given)))
+            genomes = [self.encoding.basic(), *given, *others]
         return tuple(_candidate(state.encoding, genome) for genome in genomes), state
 
     def tell(

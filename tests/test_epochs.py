@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -77,6 +79,13 @@ def _basic(encoding):
 def test_same_seed_same_search():
     first, second = (minimize(errors, epochs(NETWORK), seed=6, budget=400) for _ in range(2))
     assert first.history == second.history
+
+
+def test_begins_with_given_formulas():
+    given = NETWORK.random(stream(9))
+    search = replace(epochs(NETWORK), seeds=(given,))
+    batch, _ = search.ask(search.init(stream(1)), stream(2))
+    assert given in {each.genome for each in batch}
 
 
 def test_an_encoding_without_a_basis_is_refused():

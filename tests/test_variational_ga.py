@@ -1,5 +1,7 @@
 """The authors' genetic algorithm: what it keeps, and that it finds a formula whose form is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -122,6 +124,14 @@ def test_not_finite_is_never_best_and_loses_to_all():
         assert np.isfinite(SMALL.best(state)[1])
         wrong = ~np.isfinite(state.functionals).all(axis=1)
         assert np.all(state.ranks[wrong] == (~wrong).sum())
+
+
+def test_begins_with_the_basis_and_given_formulas():
+    given = ENCODING.random(stream(9)), ENCODING.random(stream(10))
+    search = replace(SMALL, seeds=given)
+    batch, _ = search.ask(search.init(stream(1)), stream(2))
+    assert tuple(each.genome for each in batch[:3]) == (ENCODING.basic(), *given)
+    assert len(batch) == SMALL.population
 
 
 def test_same_seed_same_search():
