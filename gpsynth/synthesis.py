@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from gpsynth.arrays import Floats
 from gpsynth.encodings.protocol import Encoding
-from gpsynth.errors import ProblemError
+from gpsynth.errors import OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
@@ -88,7 +88,8 @@ def synthesize(
     evaluations. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps,
     another plant), which no search has seen, so that a law that only fits its training loses. The same seed gives
     the same result for any number of threads. `search` is a StructureSearch, Epochs or a VariationalGA of this
-    encoding. Raises ProblemError if the encoding's inputs and outputs are not the problem's features and controls.
+    encoding; of these `islands` take the first. Raises ProblemError if the encoding's inputs and outputs are not the
+    problem's features and controls.
     """
     check_encoding(problem, encoding)
     strategy = search or StructureSearch(encoding)
@@ -100,7 +101,7 @@ def synthesize(
         if islands is None
         else search_islands(
             BatchCost(rough or problem),
-            strategy,
+            _mergeable(strategy),
             islands,
             **arguments,
             workers=threads,
@@ -117,6 +118,14 @@ def synthesize(
     with ThreadPoolExecutor(threads) as pool:
         entries = list(pool.map(entry, enumerate(found.state.front)))
     return SynthesisResult(_front(entries), found.evaluations, found.history, found.reason)
+
+
+def _mergeable(search: object) -> StructureSearch[Any]:
+    if not isinstance(search, StructureSearch):
+        raise OptimizerError(
+            f"islands merge, which a {type(search).__name__} cannot; use a StructureSearch, or no islands"
+        )
+    return search
 
 
 def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:

@@ -7,8 +7,9 @@ from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.epochs import Epochs
-from gpsynth.errors import ProblemError
+from gpsynth.errors import OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator
+from gpsynth.islands import Islands
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.structure_search import StructureSearch
@@ -69,6 +70,8 @@ def test_searches_that_move_a_basis_find_it_too(name: str) -> None:
         "epochs": Epochs(StructureSearch(varied, population=20, offspring=20), every=3),
         "authors' algorithm": VariationalGA(varied, population=30, couples=5, epoch=3, elite=3),
     }[name]
+    with pytest.raises(OptimizerError, match=f"a {type(search).__name__} cannot"):
+        synthesize(problem, varied, budget=500, search=search, islands=Islands(2))
     result = synthesize(problem, varied, seed=1, budget=500, tuning=200, search=search)
     assert result.evaluations <= 500
     optimum = np.mean([np.sqrt(2) * (x * x + v * v) + 2 * x * v for x, v in STARTS])

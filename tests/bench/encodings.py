@@ -21,7 +21,7 @@ from examples import landau_oscillator
 from gpsynth.encodings.columns import basic_columns
 from gpsynth.encodings.complete_tree import basic_tree
 from gpsynth.encodings.layers import basic_layers
-from gpsynth.synthesis import batch_cost
+from gpsynth.synthesis import BatchCost
 from tests.bench import robot_a
 
 PLAIN = ("add", "mul", "max", "min", "neg", "square", "signed_sqrt", "tanh", "sin", "cos", "atan")
@@ -88,7 +88,7 @@ PROBLEMS: MappingProxyType[str, Callable[[], gs.Problem]] = MappingProxyType(
 def costs(problem: gs.Problem, search: Callable[[Names], Any], seeds: int, budget: int) -> list[float]:
     """The cost that each seed finds."""
     names = problem.features.names, tuple(problem.plant.control_names)
-    cost = batch_cost(gs.Evaluator(problem), 1)
+    cost = BatchCost(problem)
     found = [gs.minimize(cost, search(names), seed=seed, budget=budget).cost for seed in range(1, seeds + 1)]
     print(problem.plant.name, np.round(sorted(found), 3).tolist(), file=sys.stderr, flush=True)
     return found
