@@ -1,8 +1,9 @@
 """`python -m tests.bench.encodings`: every encoding on three problems at equal budgets, with what chance explains.
 
 The same search, starts, functions and numbers for all; matrices use the functions with their published guards. A cell
-is the median over the seeds of the cost found, and in brackets the probability that it is no worse than the best
-median of its column (Mann-Whitney U, two-sided, Holm over the column); evaluations are rollouts from all starts.
+is the median over the seeds of the cost found, and in brackets the probability of a difference like that from the best
+median of its column if there were none (Mann-Whitney U, two-sided, corrected by Holm over the column). An evaluation is
+one candidate rolled out from all starts.
 """
 
 import argparse
@@ -95,7 +96,7 @@ def costs(problem: gs.Problem, search: Callable[[Names], Any], seeds: int, budge
 
 
 def chances(found: dict[str, list[float]]) -> dict[str, float]:
-    """How likely each is no worse than the best median, corrected for their number (Holm 1979)."""
+    """How likely such a difference from the best median is if there is none, corrected for their number (Holm 1979)."""
     best = min(found, key=lambda name: median(found[name]))
     raw = {name: mannwhitneyu(found[best], runs).pvalue for name, runs in found.items() if name != best}
     corrected, least = {best: 1.0}, 0.0
