@@ -43,3 +43,7 @@ class ScenarioError(GpsynthError):
 
 class FileError(GpsynthError):
     """A file that is missing, unreadable, too large or not of the expected format."""
+
+
+class MissingPackageError(GpsynthError):
+    """A package that a feature needs and that is not installed; the text says how to install it."""

@@ -1,10 +1,13 @@
 """Stage 1: synthesize a stabilizer u = g(x, x*), structure and numbers together, as a front of cost and complexity."""
 
+import csv
+import io
+import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -13,11 +16,16 @@ from gpsynth.arrays import Floats
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.files import write_text
 from gpsynth.law import Law
 from gpsynth.optimizers import CMAES, Progress, minimize
+from gpsynth.plotting import plot_front
 from gpsynth.problem import Problem
 from gpsynth.program import Program
 from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch
+
+if TYPE_CHECKING:
+    from gpsynth.plotting import Axes
 
 G = TypeVar("G")
 
@@ -54,6 +62,31 @@ class SynthesisResult:
     def law(self) -> Law:
         """The law of the best entry."""
         return self.best.law
+
+    def rows(self) -> list[dict[str, Any]]:
+        """The front as one dictionary a law, ready for pandas.DataFrame; formulas are joined by '; '."""
+        return [
+            {
+                "complexity": entry.complexity,
+                "cost": entry.cost,
+                "reached": entry.reached,
+                "median_time": entry.median_time,
+                "formulas": "; ".join(entry.law.formulas()),
+            }
+            for entry in self.front
+        ]
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write `rows` as a CSV file with a header; raises FileError if that is not possible."""
+        text = io.StringIO()
+        writer = csv.DictWriter(text, ["complexity", "cost", "reached", "median_time", "formulas"])
+        writer.writeheader()
+        writer.writerows(self.rows())
+        write_text(path, text.getvalue())
+
+    def plot(self, *, ax: "Axes | None" = None) -> "Axes":
+        """Cost over complexity (`gpsynth.plotting.plot_front`)."""
+        return plot_front(self.front, ax=ax)
 
     def table(self) -> str:
         """The front as text: complexity, cost, share of starts reached, median time, formulas."""
