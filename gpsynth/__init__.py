@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     from gpsynth.encodings.cartesian import CartesianEncoding
     from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
+    from gpsynth.encodings.rules import Rules
+    from gpsynth.encodings.template import TemplateEncoding
     from gpsynth.encodings.tree import TreeEncoding
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
@@ -41,6 +43,8 @@ _HOME = {
     "CartesianEncoding": "encodings.cartesian",
     "NetworkOperatorEncoding": "encodings.network_operator",
     "ParameterSpace": "encodings.parameters",
+    "Rules": "encodings.rules",
+    "TemplateEncoding": "encodings.template",
     "TreeEncoding": "encodings.tree",
     "Evaluator": "evaluate",
     "Rollouts": "evaluate",
@@ -93,10 +97,12 @@ __all__ = [
     "Program",
     "Robustness",
     "Rollouts",
+    "Rules",
     "Schedule",
     "Stress",
     "StructureSearch",
     "SynthesisResult",
+    "TemplateEncoding",
     "Trajectory",
     "TreeEncoding",
     "__version__",

@@ -17,6 +17,10 @@ class TracingError(GpsynthError):
     """A Python function that cannot become a program; the text names the line."""
 
 
+class FormulaError(GpsynthError):
+    """A formula given as text, function or program that cannot be used as one."""
+
+
 class PlantError(GpsynthError):
     """A plant whose states, controls, limits or derivatives do not fit together."""
 

@@ -5,7 +5,7 @@ import io
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -17,6 +17,7 @@ from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.files import write_text
+from gpsynth.guesses import Guess, genomes_of
 from gpsynth.law import Law
 from gpsynth.optimizers import CMAES, Progress, minimize
 from gpsynth.plotting import plot_front
@@ -105,6 +106,7 @@ def synthesize(
     budget: int = 20_000,
     tuning: int = 2_000,
     search: StructureSearch[G] | None = None,
+    guesses: Sequence[Guess] = (),
     rough: Problem | None = None,
     trials: Sequence[Problem] = (),
     threads: int = 2,
@@ -116,13 +118,16 @@ def synthesize(
     An evaluation is one parameter vector of one formula rolled out from all starts. The search may use a `rough`
     problem (fewer starts, longer steps); every law of the front is tuned on `problem` itself, with at most `tuning`
     evaluations. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps,
-    another plant), which no search has seen, so that a law that only fits its training loses. The same seed gives
+    another plant), which no search has seen, so that a law that only fits its training loses.
+
+    The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. The same seed gives
     the same result for any number of threads. Raises ProblemError if the encoding's inputs and outputs are not the
-    problem's features and controls.
+    problem's features and controls, EncodingError or FormulaError if a guess is no formula of the encoding.
     """
     check_encoding(problem, encoding)
     cost = batch_cost(Evaluator(rough or problem), threads)
     strategy = search or StructureSearch(encoding)
+    strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
     found = minimize(
         cost, strategy, seed=seed, budget=budget, path=(SEARCH,), progress=progress, callback=callback
     )

@@ -1,7 +1,7 @@
 """Expression trees, one per output, generated, cut and joined by DEAP (Koza 1992; Fortin et al. 2012)."""
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -17,6 +17,8 @@ from gpsynth.arrays import Floats
 from gpsynth.builder import Builder, Reference
 from gpsynth.encodings.checks import checked_at_least, checked_names, checked_operations
 from gpsynth.encodings.parameters import ParameterSpace, Values
+from gpsynth.encodings.rules import Rules
+from gpsynth.encodings.tree_of_program import trees_of
 from gpsynth.errors import EncodingError
 from gpsynth.operations import operation
 from gpsynth.program import Program
@@ -41,7 +43,7 @@ class TreeEncoding:
     """One tree per output; subtrees that occur twice are computed once.
 
     A child that is higher than `max_height`, larger than `max_size` nodes or has more numbers than `space.count` is
-    replaced by its parent.
+    replaced by its parent; `rules` always hold.
     """
 
     inputs: tuple[str, ...]
@@ -53,12 +55,14 @@ class TreeEncoding:
     max_height: int = 10
     max_size: int = 60  # nodes per tree
     transfer: float = 0.5  # how often a crossover chooses the two outputs independently
+    rules: Rules = Rules()
 
     def __post_init__(self) -> None:
         checked_names(self.inputs, self.outputs)
         checked_operations(self.operations)
         checked_at_least("max_height", self.max_height, 0)
         checked_at_least("max_size", self.max_size, 1)
+        self.rules.check(self.operations)
         for name in ("start_heights", "grown_heights"):
             low, high = getattr(self, name)
             if not 0 <= low <= high <= self.max_height:
@@ -94,6 +98,27 @@ class TreeEncoding:
             ours[i], theirs[j] = gp.cxOnePoint(ours[i], theirs[j])
         return self._child(ours, i, a, rng), self._child(theirs, j, b, rng)
 
+    def from_program(self, program: Program, parameters: Sequence[float] = ()) -> TreeGenome:
+        """The genome of a given formula: its parameters, with these values, and its constants become numbers.
+
+        Raises EncodingError if the formula is not one of this space: other inputs, outputs or operations, too large.
+        """
+        if not set(program.inputs) <= set(self.inputs) or program.names != self.outputs:
+            raise EncodingError(
+                f"the formula maps {', '.join(program.inputs)} to {', '.join(program.names)}; "
+                f"expected {', '.join(self.inputs)} to {', '.join(self.outputs)}"
+            )
+        known = {name: code for code, name in enumerate(self.inputs)}
+        known |= {name: len(known) + 1 + code for code, name in enumerate(self.operations)}
+        trees = trees_of(program, parameters, self.operations, most=self.max_size)
+        codes = tuple(
+            tuple(known[item] if isinstance(item, str) else len(self.inputs) for item in tree)
+            for tree in trees
+        )
+        genome = TreeGenome(codes, tuple(item for tree in trees for item in tree if isinstance(item, float)))
+        self.check(genome)
+        return genome
+
     def decode(self, genome: TreeGenome) -> Program:
         """The trees as one program; each number is a parameter of its own."""
         builder = Builder(self.inputs, self.space.names(len(genome.values)))
@@ -125,10 +150,13 @@ class TreeEncoding:
         self.space.checked(genome.values, numbers)
         for number, deap_tree in enumerate(self.to_deap(genome)):
             if not self._fits(deap_tree):
+                size = self.rules.size(_operations(deap_tree))
                 raise EncodingError(
-                    f"tree {number} has height {deap_tree.height} and {len(deap_tree)} nodes; "
+                    f"tree {number} has height {deap_tree.height} and {size} nodes; "
                     f"at most {self.max_height} and {self.max_size} are allowed"
                 )
+            if len(self._obeying(deap_tree)) < len(deap_tree):
+                raise EncodingError(f"tree {number} breaks a rule: {self.rules}")
 
     @cached_property
     def primitives(self) -> gp.PrimitiveSet:
@@ -177,7 +205,12 @@ class TreeEncoding:
         return missing == 0
 
     def _fits(self, tree: gp.PrimitiveTree) -> bool:
-        return len(tree) <= self.max_size and tree.height <= self.max_height
+        return self.rules.size(_operations(tree)) <= self.max_size and tree.height <= self.max_height
+
+    def _obeying(self, tree: gp.PrimitiveTree) -> gp.PrimitiveTree:
+        if not self.rules.restrict:
+            return tree
+        return gp.PrimitiveTree([tree[place] for place in self.rules.kept(_operations(tree))])
 
     def _changed(self, tree: gp.PrimitiveTree) -> tuple[gp.PrimitiveTree]:
         """DEAP's mutations and one of ours; a whole new subtree is the commonest, the others are small steps."""
@@ -224,7 +257,7 @@ class TreeEncoding:
 
     def _grown(self) -> gp.PrimitiveTree:
         for _ in range(_TRIES):
-            tree = gp.PrimitiveTree(gp.genHalfAndHalf(self.primitives, *self.start_heights))
+            tree = self._obeying(gp.PrimitiveTree(gp.genHalfAndHalf(self.primitives, *self.start_heights)))
             if self._fits(tree):
                 return tree
         return gp.PrimitiveTree(gp.genFull(self.primitives, 0, 0))
@@ -232,6 +265,7 @@ class TreeEncoding:
     def _child(
         self, trees: list[gp.PrimitiveTree], index: int, parent: TreeGenome, rng: np.random.Generator
     ) -> TreeGenome:
+        trees[index] = self._obeying(trees[index])
         child = self._read(trees, rng)
         return child if self._fits(trees[index]) and len(child.values) <= self.space.count else parent
 
@@ -272,6 +306,11 @@ class TreeEncoding:
                 operands = [stack.pop() for _ in range(arity)]
                 stack.append(builder.apply(self.operations[code - number - 1], *operands))
         return stack[0]
+
+
+def _operations(tree: gp.PrimitiveTree) -> list[str]:
+    """The name of each node's operation, empty where a leaf stands."""
+    return [node.name if isinstance(node, gp.Primitive) else "" for node in tree]
 
 
 def _is_number(node: gp.Primitive | gp.Terminal) -> bool:
