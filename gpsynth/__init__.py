@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from gpsynth.encodings.tree import TreeEncoding
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
+    from gpsynth.objective import Objective
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
     from gpsynth.planning import Plan, PlanSettings, plan
     from gpsynth.plant import Plant
     from gpsynth.problem import Obstacles, Problem
     from gpsynth.program import Program
+    from gpsynth.refitting import refit
     from gpsynth.schedule import Schedule
     from gpsynth.seeds import stream
     from gpsynth.simulation import Trajectory, simulate
@@ -49,6 +51,7 @@ _HOME = {
     "Evaluator": "evaluate",
     "Rollouts": "evaluate",
     "Law": "law",
+    "Objective": "objective",
     "CMAES": "optimizers",
     "NSGA2": "optimizers",
     "PSO": "optimizers",
@@ -61,6 +64,7 @@ _HOME = {
     "Obstacles": "problem",
     "Problem": "problem",
     "Program": "program",
+    "refit": "refitting",
     "Schedule": "schedule",
     "stream": "seeds",
     "Trajectory": "simulation",
@@ -88,6 +92,7 @@ __all__ = [
     "GpsynthError",
     "Law",
     "NetworkOperatorEncoding",
+    "Objective",
     "Obstacles",
     "ParameterSpace",
     "Plan",
@@ -113,6 +118,7 @@ __all__ = [
     "minimize",
     "plan",
     "random_draws",
+    "refit",
     "simplify",
     "simulate",
     "stream",

@@ -1,7 +1,7 @@
 """Costs of many candidates at once: laws, parameter vectors and schedules, each from every start of a problem."""
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -24,6 +24,16 @@ _NO_TRACE = np.empty((0, 0, 0))
 
 
 @dataclass(frozen=True)
+class Paths:
+    """What N candidates passed through from S starts, in K control periods at most; NaN after the end of a rollout."""
+
+    t: Floats  # (K + 1,) s
+    x: Floats  # (N, S, K + 1, n)
+    u: Floats  # (N, S, K + 1, m) computed at each tick; the last one would be applied next
+    target: Floats  # (N, S, K + 1, n)
+
+
+@dataclass(frozen=True)
 class Rollouts:
     """What became of N candidates from S starts."""
 
@@ -36,6 +46,7 @@ class Rollouts:
     diverged: Floats  # (N, S) 1.0 where the rollout diverged
     terminal: Floats  # (N, S, q)
     final: Floats  # (N, S, n)
+    paths: Paths | None = None  # where they were asked for
 
 
 class _Plans(NamedTuple):
@@ -68,8 +79,11 @@ class Evaluator:
         if not 0.0 <= self.margin < np.inf:
             raise ProblemError(f"the margin must be finite and at least 0 m, got {self.margin}")
 
-    def of_program(self, program: Program, parameters: Floats) -> Rollouts:
-        """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p)."""
+    def of_program(self, program: Program, parameters: Floats, *, paths: bool = False) -> Rollouts:
+        """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p).
+
+        With `paths` everything they pass through is kept.
+        """
         problem = self.problem
         if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
             raise ProblemError(
@@ -81,7 +95,7 @@ class Evaluator:
             raise ProblemError(
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
-        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors))
+        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors), paths)
 
     def of_schedules(
         self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None, *, reach: float = 0.0
@@ -114,7 +128,13 @@ class Evaluator:
         return _Plans(places, np.cumsum(times, axis=1), reach)
 
     def _roll(
-        self, program: Program, vectors: Floats, plans: _Plans, horizon: float, candidates: int
+        self,
+        program: Program,
+        vectors: Floats,
+        plans: _Plans,
+        horizon: float,
+        candidates: int,
+        paths: bool = False,
     ) -> Rollouts:
         """One candidate a parameter vector, or a plan."""
         starts = len(self.problem.starts)
@@ -130,8 +150,25 @@ class Evaluator:
             points=np.ascontiguousarray(plans.points, dtype=np.float64),
             ends=np.ascontiguousarray(plans.ends, dtype=np.float64),
         )
-        result = roll(self, program, sealed(lanes), horizon, _NO_TRACE, plans.reach)
-        return _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
+        trace = self._trace(len(lane), horizon) if paths else _NO_TRACE
+        result = roll(self, program, sealed(lanes), horizon, trace, plans.reach)
+        rollouts = _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
+        return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
+
+    def _trace(self, lanes: int, horizon: float) -> Floats:
+        """Room for states, controls and targets at each tick."""
+        width = 2 * self.problem.starts.shape[1] + len(self.problem.plant.controls)
+        return np.full((lanes, periods_of(self.problem, horizon) + 1, width), np.nan)
+
+    def _paths(self, trace: Floats, candidates: int) -> Paths:
+        table = trace.reshape(candidates, -1, *trace.shape[1:])
+        states = self.problem.starts.shape[1]
+        return Paths(
+            t=self.problem.period * np.arange(trace.shape[1], dtype=np.float64),
+            x=table[..., :states],
+            u=table[..., states:-states],
+            target=table[..., -states:],
+        )
 
     @cached_property
     def world(self) -> World:

@@ -13,16 +13,19 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
+from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.files import write_text
 from gpsynth.guesses import Guess, genomes_of
 from gpsynth.law import Law
+from gpsynth.objective import PROBLEMS_OWN, Function, Objective, as_objective, score
 from gpsynth.optimizers import CMAES, Progress, minimize
 from gpsynth.plotting import plot_front
 from gpsynth.problem import Problem
 from gpsynth.program import Program
+from gpsynth.refitting import improved, mean_cost
 from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch
 
 if TYPE_CHECKING:
@@ -107,6 +110,7 @@ def synthesize(
     tuning: int = 2_000,
     search: StructureSearch[G] | None = None,
     guesses: Sequence[Guess] = (),
+    objective: Objective | Function | None = None,
     rough: Problem | None = None,
     trials: Sequence[Problem] = (),
     threads: int = 2,
@@ -125,7 +129,8 @@ def synthesize(
     problem's features and controls, EncodingError or FormulaError if a guess is no formula of the encoding.
     """
     check_encoding(problem, encoding)
-    cost = batch_cost(Evaluator(rough or problem), threads)
+    wanted = as_objective(objective)
+    cost = batch_cost(Evaluator(rough or problem), threads, wanted)
     strategy = search or StructureSearch(encoding)
     strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
     found = minimize(
@@ -134,8 +139,11 @@ def synthesize(
     evaluators = [Evaluator(each) for each in (problem, *trials)]
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
-        program, values = _tuned(evaluators[0], encoding, *numbered, seed=seed, budget=tuning)
-        return _entry(evaluators, program, values)
+        number, individual = numbered
+        values = _tuned(
+            evaluators[0], encoding.space, individual, wanted, seed=seed, budget=tuning, path=(TUNING, number)
+        )
+        return _entry(evaluators, individual.program, values, wanted)
 
     with ThreadPoolExecutor(threads) as pool:
         entries = list(pool.map(entry, enumerate(found.state.front)))
@@ -152,13 +160,9 @@ def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:
         )
 
 
-def costs_of(rollouts: Rollouts) -> Floats:
-    """Running cost and terminal costs from each start, (N, S); +inf where a rollout diverged."""
-    total: Floats = rollouts.cost + rollouts.terminal.sum(axis=-1)
-    return np.where(np.isfinite(total), total, np.inf)
-
-
-def batch_cost(evaluator: Evaluator, threads: int) -> Callable[[Sequence[Candidate[Any]]], Floats]:
+def batch_cost(
+    evaluator: Evaluator, threads: int, objective: Objective = PROBLEMS_OWN
+) -> Callable[[Sequence[Candidate[Any]]], Floats]:
     """The cost function of a structure search: candidates with one program go to the kernel together."""
 
     def cost(batch: Sequence[Candidate[Any]]) -> Floats:
@@ -166,7 +170,7 @@ def batch_cost(evaluator: Evaluator, threads: int) -> Callable[[Sequence[Candida
 
         def of_group(group: list[Candidate[Any]]) -> Floats:
             values = np.array([candidate.values for candidate in group]).reshape(len(group), -1)
-            return costs_of(evaluator.of_program(group[0].program, values))
+            return score(evaluator, group[0].program, values, objective)
 
         with ThreadPoolExecutor(threads) as pool:
             return np.concatenate(list(pool.map(of_group, groups)))
@@ -176,38 +180,36 @@ def batch_cost(evaluator: Evaluator, threads: int) -> Callable[[Sequence[Candida
 
 def _tuned(
     evaluator: Evaluator,
-    encoding: Encoding[G],
-    number: int,
-    individual: Individual[G],
+    space: ParameterSpace,
+    individual: Individual[Any],
+    objective: Objective,
     *,
     seed: int,
     budget: int,
-) -> tuple[Program, Floats]:
-    """The formula of a front member with its numbers tuned on the evaluator's problem."""
-    program, values = individual.program, individual.values
+    path: tuple[int, ...],
+) -> Floats:
+    """The numbers of a front member, tuned on the evaluator's problem."""
+    values = individual.values
     if len(values) == 0 or budget < 1:
-        return program, values
-    space = encoding.space
+        return values
     lower, upper = np.full(len(values), space.lower), np.full(len(values), space.upper)
     optimizer = CMAES(lower, upper, x0=values, sigma=0.02, restarts=0)
-
-    def cost(vectors: Floats) -> Floats:
-        means: Floats = costs_of(evaluator.of_program(program, vectors)).mean(axis=1)
-        return means
-
-    found = minimize(cost, optimizer, seed=seed, budget=budget, path=(TUNING, number))
-    before = float(cost(values[np.newaxis])[0])
-    return (program, found.x) if found.cost < before else (program, values)
+    cost = mean_cost(evaluator, individual.program, objective)
+    return improved(cost, values, optimizer, seed=seed, budget=budget, path=path)
 
 
-def _entry(evaluators: Sequence[Evaluator], program: Program, values: Floats) -> FrontEntry:
+def _entry(
+    evaluators: Sequence[Evaluator], program: Program, values: Floats, objective: Objective
+) -> FrontEntry:
     problem = evaluators[0].problem
-    rollouts = [evaluator.of_program(program, values[np.newaxis]) for evaluator in evaluators]
+    rollouts = [
+        evaluator.of_program(program, values[np.newaxis], paths=objective.paths) for evaluator in evaluators
+    ]
     arrival = np.concatenate([each.arrival[0] for each in rollouts])
     reached = np.concatenate([_there(*pair) for pair in zip(evaluators, rollouts, strict=True)])
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
-        cost=float(np.concatenate([costs_of(each)[0] for each in rollouts]).mean()),
+        cost=float(np.concatenate([objective(each)[0] for each in rollouts]).mean()),
         complexity=program.complexity,
         reached=float(reached.mean()),
         median_time=float(np.median(arrival[reached])) if reached.any() else float("inf"),

@@ -10,9 +10,10 @@ from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
+from gpsynth.objective import costs_of
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
-from gpsynth.synthesis import costs_of, synthesize
+from gpsynth.synthesis import synthesize
 
 PLANT = Plant(
     lambda x, u: (x.speed, u.force),

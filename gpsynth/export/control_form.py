@@ -26,7 +26,9 @@ def to_control(law: Law) -> control.NonlinearIOSystem:
     size = len(plant.state_names)
 
     def update(t: float, x: Floats, u: Floats, params: dict[str, Any]) -> Floats:
-        derivatives: Floats = plant.dynamics(np.concatenate([x, law(x, u), [t]])[np.newaxis])[0]
+        derivatives: Floats = plant.dynamics(np.concatenate([x, law(x, u), [t]])[np.newaxis], plant.nominal)[
+            0
+        ]
         return derivatives
 
     def output(t: float, x: Floats, u: Floats, params: dict[str, Any]) -> Floats:
