@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from importlib.metadata import version
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -13,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
+from gpsynth.checkpoint import fingerprint
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import ProblemError
@@ -21,11 +23,12 @@ from gpsynth.files import write_text
 from gpsynth.guesses import Guess, genomes_of
 from gpsynth.law import Law
 from gpsynth.objective import PROBLEMS_OWN, Function, Objective, as_objective, score
-from gpsynth.optimizers import CMAES, Progress, minimize
+from gpsynth.optimizers import CMAES, Progress
 from gpsynth.plotting import plot_front
 from gpsynth.problem import Problem
 from gpsynth.program import Program
 from gpsynth.refitting import improved, mean_cost
+from gpsynth.runs import INTERRUPTED, checkpoint_in, run_search
 from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch
 
 if TYPE_CHECKING:
@@ -113,6 +116,8 @@ def synthesize(
     objective: Objective | Function | None = None,
     rough: Problem | None = None,
     trials: Sequence[Problem] = (),
+    folder: str | os.PathLike[str] | None = None,
+    resume: bool = False,
     threads: int = 2,
     progress: bool = False,
     callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
@@ -124,18 +129,31 @@ def synthesize(
     evaluations. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps,
     another plant), which no search has seen, so that a law that only fits its training loses.
 
-    The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. The same seed gives
-    the same result for any number of threads. Raises ProblemError if the encoding's inputs and outputs are not the
-    problem's features and controls, EncodingError or FormulaError if a guess is no formula of the encoding.
+    The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. An `objective`, a
+    function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With a `folder`
+    the search leaves checkpoints there, and with `resume` it goes on from the last one; Ctrl-C ends it early, with what
+    was found so far. The same seed gives the same result for any number of threads and after any resume.
+
+    Raises ProblemError if the encoding's inputs and outputs are not the problem's features and controls, EncodingError
+    or FormulaError if a guess is no formula of the encoding, FileError if the folder's checkpoint is of another run.
     """
     check_encoding(problem, encoding)
     wanted = as_objective(objective)
     cost = batch_cost(Evaluator(rough or problem), threads, wanted)
     strategy = search or StructureSearch(encoding)
     strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
-    found = minimize(
-        cost, strategy, seed=seed, budget=budget, path=(SEARCH,), progress=progress, callback=callback
+    found, reason = run_search(
+        cost,
+        strategy,
+        None if folder is None else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, seed)),
+        resume=resume,
+        seed=seed,
+        budget=budget,
+        path=(SEARCH,),
+        progress=progress,
+        callback=callback,
     )
+    tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
@@ -147,7 +165,16 @@ def synthesize(
 
     with ThreadPoolExecutor(threads) as pool:
         entries = list(pool.map(entry, enumerate(found.state.front)))
-    return SynthesisResult(_front(entries), found.evaluations, found.history, found.reason)
+    return SynthesisResult(_front(entries), found.evaluations, found.history, reason)
+
+
+def _identity(
+    problem: Problem, rough: Problem | None, search: StructureSearch[Any], objective: Objective, seed: int
+) -> dict[str, str]:
+    """What two runs must have in common for one to go on where the other stopped."""
+    parts = {"problem": problem, "rough problem": rough, "search": search, "objective": objective}
+    hashes = {name: fingerprint(part) for name, part in parts.items()}
+    return {**hashes, "seed": str(seed), "release": version("gpsynth")}
 
 
 def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:
