@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from gpsynth.tracing import trace, where, wrap_angle
     from gpsynth.verify.robustness import Robustness, assess
     from gpsynth.verify.stress import Stress
+    from gpsynth.units import UnitReport, check_units
 
 __version__ = "0.1.0"
 
@@ -78,6 +79,8 @@ _HOME = {
     "Robustness": "verify.robustness",
     "assess": "verify.robustness",
     "Stress": "verify.stress",
+    "UnitReport": "units",
+    "check_units": "units",
 }  # public name -> module; loaded on first use, so that `import gpsynth` does not wait for numba
 
 __all__ = [
@@ -110,9 +113,11 @@ __all__ = [
     "TemplateEncoding",
     "Trajectory",
     "TreeEncoding",
+    "UnitReport",
     "__version__",
     "assess",
     "bind",
+    "check_units",
     "compose",
     "crossed",
     "minimize",

@@ -21,6 +21,10 @@ class FormulaError(GpsynthError):
     """A formula given as text, function or program that cannot be used as one."""
 
 
+class UnitError(GpsynthError):
+    """A unit that cannot be read, or units that do not fit together."""
+
+
 class PlantError(GpsynthError):
     """A plant whose states, controls, limits or derivatives do not fit together."""
 

@@ -1,9 +1,9 @@
 """Expression trees, one per output, generated, cut and joined by DEAP (Koza 1992; Fortin et al. 2012)."""
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from math import exp
 from threading import Lock
@@ -19,6 +19,7 @@ from gpsynth.encodings.checks import checked_at_least, checked_names, checked_op
 from gpsynth.encodings.parameters import ParameterSpace, Values
 from gpsynth.encodings.rules import Rules
 from gpsynth.encodings.tree_of_program import trees_of
+from gpsynth.encodings.unit_rules import UnitRules
 from gpsynth.errors import EncodingError
 from gpsynth.operations import operation
 from gpsynth.program import Program
@@ -43,7 +44,8 @@ class TreeEncoding:
     """One tree per output; subtrees that occur twice are computed once.
 
     A child that is higher than `max_height`, larger than `max_size` nodes or has more numbers than `space.count` is
-    replaced by its parent; `rules` always hold.
+    replaced by its parent; `rules` always hold. Where `units` are given the units of every formula fit, numbers having
+    any unit.
     """
 
     inputs: tuple[str, ...]
@@ -56,6 +58,7 @@ class TreeEncoding:
     max_size: int = 60  # nodes per tree
     transfer: float = 0.5  # how often a crossover chooses the two outputs independently
     rules: Rules = Rules()
+    units: Mapping[str, str] | None = field(default=None, hash=False)  # of inputs and outputs, to be kept
 
     def __post_init__(self) -> None:
         checked_names(self.inputs, self.outputs)
@@ -63,6 +66,8 @@ class TreeEncoding:
         checked_at_least("max_height", self.max_height, 0)
         checked_at_least("max_size", self.max_size, 1)
         self.rules.check(self.operations)
+        if self.units is not None:
+            self._check_units()
         for name in ("start_heights", "grown_heights"):
             low, high = getattr(self, name)
             if not 0 <= low <= high <= self.max_height:
@@ -72,9 +77,13 @@ class TreeEncoding:
 
     def random(self, rng: np.random.Generator) -> TreeGenome:
         """Trees grown half-and-half."""
-        with _lent(rng):
-            trees = [self._grown() for _ in self.outputs]
-        return self._read(trees, rng)
+        for _ in range(_TRIES):
+            with _lent(rng):
+                trees = [self._grown(output) for output in range(len(self.outputs))]
+            genome = self._read(trees, rng)
+            if len(genome.values) <= self.space.count and self._lawful(genome):
+                return genome
+        return self._smallest()
 
     def mutate(self, genome: TreeGenome, rng: np.random.Generator) -> TreeGenome:
         """A subtree replaced, a node replaced, inserted or taken out, or one number moved."""
@@ -155,8 +164,10 @@ class TreeEncoding:
                     f"tree {number} has height {deap_tree.height} and {size} nodes; "
                     f"at most {self.max_height} and {self.max_size} are allowed"
                 )
-            if len(self._obeying(deap_tree)) < len(deap_tree):
+            if len(self.rules.kept(_operations(deap_tree))) < len(deap_tree):
                 raise EncodingError(f"tree {number} breaks a rule: {self.rules}")
+        if not self._lawful(genome):
+            raise EncodingError(f"the units of the trees do not fit: {dict(self.units or {})}")
 
     @cached_property
     def primitives(self) -> gp.PrimitiveSet:
@@ -207,10 +218,50 @@ class TreeEncoding:
     def _fits(self, tree: gp.PrimitiveTree) -> bool:
         return self.rules.size(_operations(tree)) <= self.max_size and tree.height <= self.max_height
 
-    def _obeying(self, tree: gp.PrimitiveTree) -> gp.PrimitiveTree:
-        if not self.rules.restrict:
+    def _obeying(self, tree: gp.PrimitiveTree, output: int) -> gp.PrimitiveTree:
+        """The tree without what breaks a rule, then with numbers where units do not fit."""
+        if self.rules.restrict:
+            tree = gp.PrimitiveTree([tree[place] for place in self.rules.kept(_operations(tree))])
+        if self._unit_rules is None:
             return tree
-        return gp.PrimitiveTree([tree[place] for place in self.rules.kept(_operations(tree))])
+        factor = [self.primitives.mapping["mul"], self._number(1.0)]
+        nodes = [(node, self._meaning(node)) for node in tree]
+        return gp.PrimitiveTree(self._unit_rules.fitted(nodes, output, factor))
+
+    def _lawful(self, genome: TreeGenome) -> bool:
+        """Whether the trees keep to the rules and units."""
+        if not self.rules.restrict and self._unit_rules is None:
+            return True
+        return all(
+            len(self._obeying(tree, output)) == len(tree) for output, tree in enumerate(self.to_deap(genome))
+        )
+
+    def _meaning(self, node: gp.Primitive | gp.Terminal) -> str | int | None:
+        """The operation, or the index of the input; None for a number."""
+        if isinstance(node, gp.Primitive):
+            return str(node.name)
+        return None if _is_number(node) or node.name == _NEW else self._codes[node.name]
+
+    @cached_property
+    def _unit_rules(self) -> UnitRules | None:
+        return None if self.units is None else UnitRules.of(self.units, self.inputs, self.outputs)
+
+    def _check_units(self) -> None:
+        rules = self._unit_rules
+        assert rules is not None
+        missing = [name for k, name in enumerate(self.outputs) if rules.terminal(k) is None]
+        if "mul" not in self.operations or self.space.count < max(1, len(missing)):
+            raise EncodingError(
+                f"to keep units the operations must have mul and the parameter space at least {max(1, len(missing))} "
+                f"numbers, which make formulas fit; got {', '.join(self.operations)} and {self.space.count}"
+            )
+
+    def _smallest(self) -> TreeGenome:
+        """One leaf for each output: an input of its unit, or else a number."""
+        rules, number = self._unit_rules, len(self.inputs)
+        inputs = [0 if rules is None else rules.terminal(output) for output in range(len(self.outputs))]
+        trees = tuple((number,) if code is None else (code,) for code in inputs)
+        return TreeGenome(trees, (self.space.nearest(1.0),) * inputs.count(None))
 
     def _changed(self, tree: gp.PrimitiveTree) -> tuple[gp.PrimitiveTree]:
         """DEAP's mutations and one of ours; a whole new subtree is the commonest, the others are small steps."""
@@ -255,9 +306,10 @@ class TreeEncoding:
     def _number(self, value: float) -> gp.Terminal:
         return gp.Terminal(self.space.nearest(value), False, object)
 
-    def _grown(self) -> gp.PrimitiveTree:
+    def _grown(self, output: int) -> gp.PrimitiveTree:
         for _ in range(_TRIES):
-            tree = self._obeying(gp.PrimitiveTree(gp.genHalfAndHalf(self.primitives, *self.start_heights)))
+            tree = gp.PrimitiveTree(gp.genHalfAndHalf(self.primitives, *self.start_heights))
+            tree = self._obeying(tree, output)
             if self._fits(tree):
                 return tree
         return gp.PrimitiveTree(gp.genFull(self.primitives, 0, 0))
@@ -265,9 +317,10 @@ class TreeEncoding:
     def _child(
         self, trees: list[gp.PrimitiveTree], index: int, parent: TreeGenome, rng: np.random.Generator
     ) -> TreeGenome:
-        trees[index] = self._obeying(trees[index])
+        trees[index] = self._obeying(trees[index], index)
         child = self._read(trees, rng)
-        return child if self._fits(trees[index]) and len(child.values) <= self.space.count else parent
+        fits = self._fits(trees[index]) and len(child.values) <= self.space.count
+        return child if fits and self._lawful(child) else parent
 
     def _read(self, trees: list[gp.PrimitiveTree], rng: np.random.Generator) -> TreeGenome:
         """The genome of DEAP's trees; new numbers are drawn, or become inputs where there are enough of them."""

@@ -51,6 +51,13 @@ ENCODINGS = {
             weights={"sin": 4},
         ),
     ),
+    "tree-units": TreeEncoding(
+        ("x", "y", "phi"),
+        ("u", "v"),
+        PLAIN,
+        ParameterSpace(8, -4.0, 4.0),
+        units={"x": "m", "y": "m/s", "phi": "rad", "u": "m", "v": "m/s^2"},
+    ),
     "tree-unary": TreeEncoding(("x",), ("u",), UNARY, max_size=6),
     "template": TemplateEncoding(
         TreeEncoding(("x", "y"), ("g", "h"), PLAIN, NUMBERS), lambda f, g, h: (g, f.x * h), ("u", "v")
