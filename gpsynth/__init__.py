@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from gpsynth.tracing import trace, where, wrap_angle
     from gpsynth.verify.robustness import Robustness, assess
     from gpsynth.verify.stress import Stress
+    from gpsynth.tradeoffs import Tradeoffs, synthesize_tradeoffs
     from gpsynth.units import UnitReport, check_units
 
 __version__ = "0.1.0"
@@ -79,6 +80,8 @@ _HOME = {
     "Robustness": "verify.robustness",
     "assess": "verify.robustness",
     "Stress": "verify.stress",
+    "Tradeoffs": "tradeoffs",
+    "synthesize_tradeoffs": "tradeoffs",
     "UnitReport": "units",
     "check_units": "units",
 }  # public name -> module; loaded on first use, so that `import gpsynth` does not wait for numba
@@ -111,6 +114,7 @@ __all__ = [
     "StructureSearch",
     "SynthesisResult",
     "TemplateEncoding",
+    "Tradeoffs",
     "Trajectory",
     "TreeEncoding",
     "UnitReport",
@@ -128,6 +132,7 @@ __all__ = [
     "simulate",
     "stream",
     "synthesize",
+    "synthesize_tradeoffs",
     "trace",
     "where",
     "wrap_angle",

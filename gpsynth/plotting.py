@@ -158,6 +158,17 @@ def plot_front(front: Sequence[Scored], *, ax: "Axes | None" = None) -> "Axes":
     return axes
 
 
+def plot_tradeoff(
+    points: Sequence[tuple[float, float]], names: tuple[str, str], *, ax: "Axes | None" = None
+) -> "Axes":
+    """One cost over another, a point a law."""
+    axes = _axes(ax)
+    axes.plot(*np.array([*points], dtype=np.float64).reshape(-1, 2).T, "o", color=BLUE, markersize=4.5)
+    axes.set_xlabel(names[0])
+    axes.set_ylabel(names[1])
+    return axes
+
+
 def plot_history(history: Sequence[tuple[int, float]], *, ax: "Axes | None" = None) -> "Axes":
     """Best cost over evaluations, each improvement a step; logarithmic where all costs are positive."""
     axes = _axes(ax)

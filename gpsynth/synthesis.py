@@ -1,7 +1,5 @@
 """Stage 1: synthesize a stabilizer u = g(x, x*), structure and numbers together, as a front of cost and complexity."""
 
-import csv
-import io
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -19,7 +17,6 @@ from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
-from gpsynth.files import write_text
 from gpsynth.guesses import Guess, genomes_of
 from gpsynth.law import Law
 from gpsynth.objective import PROBLEMS_OWN, Function, Objective, as_objective, score
@@ -30,6 +27,7 @@ from gpsynth.program import Program
 from gpsynth.refitting import improved, mean_cost
 from gpsynth.runs import INTERRUPTED, checkpoint_in, run_search
 from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch
+from gpsynth.tables import write_csv
 
 if TYPE_CHECKING:
     from gpsynth.plotting import Axes
@@ -85,11 +83,7 @@ class SynthesisResult:
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write `rows` as a CSV file with a header; raises FileError if that is not possible."""
-        text = io.StringIO()
-        writer = csv.DictWriter(text, ["complexity", "cost", "reached", "median_time", "formulas"])
-        writer.writeheader()
-        writer.writerows(self.rows())
-        write_text(path, text.getvalue())
+        write_csv(path, ("complexity", "cost", "reached", "median_time", "formulas"), self.rows())
 
     def plot(self, *, ax: "Axes | None" = None) -> "Axes":
         """Cost over complexity (`gpsynth.plotting.plot_front`)."""

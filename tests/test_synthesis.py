@@ -73,7 +73,8 @@ def test_front_entries_are_scored_on_the_whole_problem() -> None:
 
 
 def test_the_front_is_a_table_a_file_and_a_picture(tmp_path) -> None:
-    result = synthesized(seed=2)
+    problem = quadratic()
+    result = synthesize(problem, encoding(problem), seed=2, budget=450, tuning=0)
     result.to_csv(tmp_path / "front.csv")
     with (tmp_path / "front.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
