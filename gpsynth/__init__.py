@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
     from gpsynth.tracing import trace, where, wrap_angle
-    from gpsynth.verify.robustness import Robustness, assess
-    from gpsynth.verify.stress import Stress
     from gpsynth.tradeoffs import Tradeoffs, synthesize_tradeoffs
     from gpsynth.units import UnitReport, check_units
+    from gpsynth.verify.robustness import Robustness, assess
+    from gpsynth.verify.stress import Stress
 
 __version__ = "0.1.0"
 
