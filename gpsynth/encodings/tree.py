@@ -4,10 +4,8 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
-from math import exp
+from functools import cached_property
 from threading import Lock
-from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -18,8 +16,9 @@ from gpsynth.builder import Builder, Reference
 from gpsynth.encodings.checks import checked_at_least, checked_names, checked_operations
 from gpsynth.encodings.parameters import ParameterSpace, Values
 from gpsynth.encodings.rules import Rules
+from gpsynth.encodings.tree_changes import changed
+from gpsynth.encodings.tree_constraints import Constraints, Meaning, constraints_of
 from gpsynth.encodings.tree_of_program import trees_of
-from gpsynth.encodings.unit_rules import UnitRules
 from gpsynth.errors import EncodingError
 from gpsynth.operations import operation
 from gpsynth.program import Program
@@ -65,9 +64,7 @@ class TreeEncoding:
         checked_operations(self.operations)
         checked_at_least("max_height", self.max_height, 0)
         checked_at_least("max_size", self.max_size, 1)
-        self.rules.check(self.operations)
-        if self.units is not None:
-            self._check_units()
+        _ = self._constraints  # checks rules and units
         for name in ("start_heights", "grown_heights"):
             low, high = getattr(self, name)
             if not 0 <= low <= high <= self.max_height:
@@ -92,7 +89,8 @@ class TreeEncoding:
         trees = self.to_deap(genome)
         index = int(rng.integers(len(trees)))
         with _lent(rng):
-            (trees[index],) = self._changed(trees[index])
+            number = self._number if self._extends else None
+            trees[index] = changed(trees[index], self.primitives, self.grown_heights, number)
         return self._child(trees, index, genome, rng)
 
     def crossover(
@@ -117,13 +115,8 @@ class TreeEncoding:
                 f"the formula maps {', '.join(program.inputs)} to {', '.join(program.names)}; "
                 f"expected {', '.join(self.inputs)} to {', '.join(self.outputs)}"
             )
-        known = {name: code for code, name in enumerate(self.inputs)}
-        known |= {name: len(known) + 1 + code for code, name in enumerate(self.operations)}
-        trees = trees_of(program, parameters, self.operations, most=self.max_size)
-        codes = tuple(
-            tuple(known[item] if isinstance(item, str) else len(self.inputs) for item in tree)
-            for tree in trees
-        )
+        trees = trees_of(program, parameters, self.inputs, self.operations, most=self.max_size)
+        codes = tuple(tuple(map(self._code, tree)) for tree in trees)
         genome = TreeGenome(codes, tuple(item for tree in trees for item in tree if isinstance(item, float)))
         self.check(genome)
         return genome
@@ -219,89 +212,45 @@ class TreeEncoding:
         return self.rules.size(_operations(tree)) <= self.max_size and tree.height <= self.max_height
 
     def _obeying(self, tree: gp.PrimitiveTree, output: int) -> gp.PrimitiveTree:
-        """The tree without what breaks a rule, then with numbers where units do not fit."""
-        if self.rules.restrict:
-            tree = gp.PrimitiveTree([tree[place] for place in self.rules.kept(_operations(tree))])
-        if self._unit_rules is None:
+        if not self._constraints.restrict:
             return tree
-        factor = [self.primitives.mapping["mul"], self._number(1.0)]
+        factor = [self.primitives.mapping["mul"], self._number(1.0)] if self.units else []
         nodes = [(node, self._meaning(node)) for node in tree]
-        return gp.PrimitiveTree(self._unit_rules.fitted(nodes, output, factor))
+        return gp.PrimitiveTree(self._constraints.obeying(nodes, output, factor))
 
     def _lawful(self, genome: TreeGenome) -> bool:
-        """Whether the trees keep to the rules and units."""
-        if not self.rules.restrict and self._unit_rules is None:
+        """Whether the trees keep to rules and units."""
+        if not self._constraints.restrict:
             return True
-        return all(
-            len(self._obeying(tree, output)) == len(tree) for output, tree in enumerate(self.to_deap(genome))
-        )
+        trees = enumerate(self.to_deap(genome))
+        return all(len(self._obeying(tree, output)) == len(tree) for output, tree in trees)
 
-    def _meaning(self, node: gp.Primitive | gp.Terminal) -> str | int | None:
-        """The operation, or the index of the input; None for a number."""
+    def _meaning(self, node: gp.Primitive | gp.Terminal) -> Meaning:
         if isinstance(node, gp.Primitive):
             return str(node.name)
         return None if _is_number(node) or node.name == _NEW else self._codes[node.name]
 
     @cached_property
-    def _unit_rules(self) -> UnitRules | None:
-        return None if self.units is None else UnitRules.of(self.units, self.inputs, self.outputs)
-
-    def _check_units(self) -> None:
-        rules = self._unit_rules
-        assert rules is not None
-        missing = [name for k, name in enumerate(self.outputs) if rules.terminal(k) is None]
-        if "mul" not in self.operations or self.space.count < max(1, len(missing)):
-            raise EncodingError(
-                f"to keep units the operations must have mul and the parameter space at least {max(1, len(missing))} "
-                f"numbers, which make formulas fit; got {', '.join(self.operations)} and {self.space.count}"
-            )
+    def _constraints(self) -> Constraints:
+        return constraints_of(
+            self.rules, self.units, (self.inputs, self.outputs), self.operations, self.space
+        )
 
     def _smallest(self) -> TreeGenome:
-        """One leaf for each output: an input of its unit, or else a number."""
-        rules, number = self._unit_rules, len(self.inputs)
-        inputs = [0 if rules is None else rules.terminal(output) for output in range(len(self.outputs))]
-        trees = tuple((number,) if code is None else (code,) for code in inputs)
-        return TreeGenome(trees, (self.space.nearest(1.0),) * inputs.count(None))
+        """One leaf for each output."""
+        leaves = [self._constraints.smallest(output) for output in range(len(self.outputs))]
+        trees = tuple((len(self.inputs) if leaf is None else leaf,) for leaf in leaves)
+        return TreeGenome(trees, (self.space.nearest(1.0),) * leaves.count(None))
 
-    def _changed(self, tree: gp.PrimitiveTree) -> tuple[gp.PrimitiveTree]:
-        """DEAP's mutations and one of ours; a whole new subtree is the commonest, the others are small steps."""
-        draw = random.random()  # noqa: S311 the generator is ours while it is lent
-        if draw < 0.3 and self._extends:
-            return (self._extended(tree),)
-        if draw < 0.4 and self.operations:
-            return cast(tuple[gp.PrimitiveTree], gp.mutInsert(tree, self.primitives))
-        if draw < 0.5:
-            return cast(tuple[gp.PrimitiveTree], gp.mutShrink(tree))
-        if draw < 0.65:
-            return cast(tuple[gp.PrimitiveTree], gp.mutNodeReplacement(tree, self.primitives))
-        grow = partial(gp.genHalfAndHalf, min_=self.grown_heights[0], max_=self.grown_heights[1])
-        return cast(tuple[gp.PrimitiveTree], gp.mutUniform(tree, expr=grow, pset=self.primitives))
+    def _code(self, item: str | int | float) -> int:
+        """The code of an operation, an input's index or a number."""
+        if isinstance(item, str):
+            return len(self.inputs) + 1 + self.operations.index(item)
+        return item if isinstance(item, int) else len(self.inputs)
 
     @cached_property
     def _extends(self) -> bool:
         return self.space.count > 0 and {"add", "mul"} <= set(self.operations)
-
-    def _extended(self, tree: gp.PrimitiveTree) -> gp.PrimitiveTree:
-        """A node plus a weighted term, times a number near 1 or plus a number near 0.
-
-        What the tree did it still does, nearly; tuning the new number shows what the extension is worth.
-        """
-        place = tree.searchSubtree(random.randrange(len(tree)))  # noqa: S311 as above
-        add, times = self.primitives.mapping["add"], self.primitives.mapping["mul"]
-        draw = random.random()  # noqa: S311
-        if draw < 0.5:
-            weight = random.choice((-1.0, 1.0)) * exp(random.uniform(-3.0, 1.5))  # noqa: S311
-            tree[place] = [add, *tree[place], times, self._number(weight), *self._term()]
-        elif draw < 0.85:
-            tree[place] = [times, *tree[place], self._number(random.gauss(1.0, 0.1))]
-        else:
-            tree[place] = [add, *tree[place], self._number(random.gauss(0.0, 0.1))]
-        return tree
-
-    def _term(self) -> list[gp.Primitive | gp.Terminal]:
-        if random.random() < 0.5:  # noqa: S311
-            return [self.primitives.mapping[random.choice(self.primitives.arguments)]]  # noqa: S311
-        return cast(list[gp.Primitive | gp.Terminal], gp.genHalfAndHalf(self.primitives, *self.grown_heights))
 
     def _number(self, value: float) -> gp.Terminal:
         return gp.Terminal(self.space.nearest(value), False, object)

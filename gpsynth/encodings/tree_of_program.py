@@ -8,11 +8,11 @@ from gpsynth.errors import EncodingError
 from gpsynth.operations import Operation
 from gpsynth.program import Leaf, Program
 
-Tree = tuple[str | float, ...]  # prefix order: inputs and operations by name, numbers
+Tree = tuple[str | int | float, ...]  # prefix order: operations by name, inputs by index, numbers as floats
 
 
 def trees_of(
-    program: Program, parameters: Sequence[float], operations: Sequence[str], most: int
+    program: Program, parameters: Sequence[float], inputs: Sequence[str], operations: Sequence[str], most: int
 ) -> list[Tree]:
     """A tree for each output, made of `operations` alone, with the parameters' numbers put in.
 
@@ -26,7 +26,7 @@ def trees_of(
 
     def leaf(item: Leaf) -> Tree:
         if item.kind == "input":
-            return (item.name,)
+            return (inputs.index(item.name),)
         return (item.value if item.kind == "constant" else float(parameters[item.index]),)
 
     def node(row: Operation, operands: tuple[Tree, ...]) -> Tree:

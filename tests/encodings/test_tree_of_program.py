@@ -90,6 +90,12 @@ def test_a_formula_of_another_space_is_refused(function, changes, sentence):
         encoding(**changes).from_program(traced(function))
 
 
+def test_an_input_may_be_called_like_an_operation():
+    space = TreeEncoding(("sin", "y"), ("u",), POOR, ParameterSpace(2))
+    program = trace(lambda f: np.sin(f[0]) + f[1], [("f", ("sin", "y"))], ("u",))
+    assert np.array_equal(space.decode(space.from_program(program))(ROWS, ()), program(ROWS))
+
+
 def test_missing_numbers_are_named():
     builder = Builder(("x", "y"), ("k",))
     program = builder.build([builder.apply("mul", builder.parameters[0], builder.inputs[0])], ("u",))
