@@ -1,18 +1,16 @@
 """The command `gpsynth`: synthesize a law for the plant in a Python file, export, assess and describe laws."""
 
 import os
-import runpy
 import sys
-import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeGuard, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 
 import click
 
 from gpsynth import __version__
-from gpsynth.errors import FileError, GpsynthError, LawError, ProblemError
+from gpsynth.errors import FileError, GpsynthError, LawError
 from gpsynth.files import write_json
 
 if TYPE_CHECKING:
@@ -165,6 +163,7 @@ def assess(law_file: Path, plant_file: Path, threads: int) -> None:
     PLANT.py is code and is executed, as in synthesize.
     """
     with status(LOADING):
+        from gpsynth.plant_file import read_plant_file
         from gpsynth.verify import robustness
     law = load_law(law_file)
     click.echo(robustness.assess(law, read_plant_file(plant_file)[0], threads=threads).table())
@@ -208,6 +207,8 @@ def read_task(folder: Path) -> dict[str, Any]:
 
 def _task(plant_file: Path, encoding_name: EncodingName | None) -> tuple["Problem", "Encoding[Any]"]:
     """The problem in a file, and the encoding that is named, or else the file's, or else trees."""
+    from gpsynth.plant_file import read_plant_file
+
     problem, own = read_plant_file(plant_file)
     if own is not None and encoding_name is None:
         return problem, own
@@ -278,41 +279,6 @@ def export_law(law: "Law", folder: Path, *, name: str = "law", formats: Sequence
     return list(texts)
 
 
-def read_plant_file(path: Path) -> tuple["Problem", "Encoding[Any] | None"]:
-    """Execute a Python file and take its `problem` and, if it has one, its `encoding`.
-
-    Raises FileError if there is no such file or it fails, ProblemError if one of the two is something else, and what is
-    wrong with the plant or problem under its own name, with the file and line in front.
-    """
-    from gpsynth.problem import Problem
-
-    if not path.is_file():
-        raise FileError(f"{path} {'is not a file' if path.exists() else 'does not exist'}")
-    try:
-        names = runpy.run_path(str(path))
-    except GpsynthError as error:
-        text = str(error)  # of tracing, which names a line itself
-        raise type(error)(text if text.startswith(str(path)) else f"{_place(path, error)}: {text}") from None
-    except (Exception, SystemExit) as error:  # noqa: BLE001 a plant file is code and may raise anything
-        text = error.msg if _is_syntax_of(error, path) else str(error)
-        raise FileError(f"{_place(path, error)}: {type(error).__name__}: {text}") from None
-    problem = names.get("problem")
-    if not isinstance(problem, Problem):
-        found = (
-            f"defines it as {type(problem).__name__}"
-            if "problem" in names
-            else "defines nothing of that name"
-        )
-        raise ProblemError(f"{path} must define `problem`, a gpsynth.Problem, but {found}")
-    encoding = names.get("encoding")
-    if encoding is not None and not _is_encoding(encoding):
-        raise ProblemError(
-            f"{path} must define `encoding`, if at all, as an encoding such as gpsynth.TreeEncoding(...), "
-            f"but defines it as {encoding!r}"
-        )
-    return problem, encoding
-
-
 def named_encoding(name: EncodingName, problem: "Problem") -> "Encoding[Any]":
     """An encoding for the problem's features and controls, with operations of general use."""
     from gpsynth.encodings.cartesian import CartesianEncoding
@@ -376,27 +342,6 @@ def _described(entry: "FrontEntry") -> dict[str, Any]:
         "median_time": entry.median_time if entry.reached > 0.0 else None,  # s
         "law": entry.law.to_dict(),
     }
-
-
-def _place(path: Path, error: BaseException) -> str:
-    """The file and, if the error passed through it, the line."""
-    if _is_syntax_of(error, path):
-        return f"{path}, line {error.lineno}"
-    lines = [
-        frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
-    ]
-    return f"{path}, line {lines[-1]}" if lines else str(path)
-
-
-def _is_syntax_of(error: BaseException, path: Path) -> TypeGuard[SyntaxError]:
-    """Whether the file itself is not Python."""
-    return isinstance(error, SyntaxError) and error.filename == str(path)
-
-
-def _is_encoding(value: Any) -> bool:
-    """Whether a value is made like the protocol `Encoding`."""
-    parts = ("inputs", "outputs", "space", "random", "mutate", "crossover", "decode", "parameters")
-    return not isinstance(value, type) and all(hasattr(value, part) for part in parts)
 
 
 def _one_line(error: BaseException) -> str:
