@@ -61,7 +61,7 @@ def test_what_the_problem_says_is_the_default_objective():
 def test_nan_and_divergence_cost_infinity():
     unstable = trace(lambda f: -5.0 * f.error_place, [("f", PROBLEM.features.names)], ("force",))
     problem = Problem(PLANT.with_limits([-1e9], [1e9]), STARTS, (0.0, 0.0), tolerance=0.01, horizon=30.0)
-    costs = score(Evaluator(problem), unstable, np.empty((1, 0)), Objective(lambda r: r.arrival * 0.0))
+    costs = score(Evaluator(problem), unstable, np.empty((1, 0)), Objective(lambda r: np.zeros_like(r.cost)))
     assert np.all(np.isinf(costs))
     costs = score(Evaluator(PROBLEM), LINEAR, np.empty((1, 0)), Objective(lambda r: r.end * np.nan))
     assert np.all(costs == np.inf)

@@ -49,7 +49,9 @@ def test_a_resumed_search_equals_one_without_interruption(tmp_path, whole, gener
         **SETTINGS,
     )
     assert stopped.reason == "stopped by callback"
-    same(resumed(tmp_path), whole)
+    seen = []
+    same(resumed(tmp_path, callback=lambda progress: seen.append(progress.generation)), whole)
+    assert seen[0] == generation + 1  # it goes on, and does not begin again
     same(resumed(tmp_path), whole)  # once more, from its end
 
 
@@ -67,12 +69,16 @@ def test_a_killed_search_goes_on_where_it_was(tmp_path, whole):
 
 
 def test_ctrl_c_gives_what_was_found_so_far(tmp_path, whole):
+    seen = []
+
     def interrupt(progress):
+        seen.append(progress.evaluations)
         if progress.generation == 4:
             raise KeyboardInterrupt
 
     result = synthesize(PROBLEM, encoding(PROBLEM), callback=interrupt, folder=tmp_path, **SETTINGS)
     assert result.reason == "interrupted"
+    assert result.evaluations == seen[3]
     assert result.history == tuple(entry for entry in whole.history if entry[0] <= result.evaluations)
     assert result.front
     same(resumed(tmp_path), whole)
