@@ -10,22 +10,28 @@ if TYPE_CHECKING:
     from gpsynth.draws import Draws, crossed, random_draws
     from gpsynth.encodings.cartesian import CartesianEncoding
     from gpsynth.encodings.parameters import ParameterSpace
+    from gpsynth.encodings.rules import Rules
+    from gpsynth.encodings.template import TemplateEncoding
     from gpsynth.encodings.tree import TreeEncoding
     from gpsynth.encodings.variational import VariationalEncoding
     from gpsynth.epochs import Epochs
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
+    from gpsynth.objective import Objective
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
     from gpsynth.planning import Plan, PlanSettings, plan
     from gpsynth.plant import Plant
     from gpsynth.problem import Obstacles, Problem
     from gpsynth.program import Program
+    from gpsynth.refitting import refit
     from gpsynth.schedule import Schedule
     from gpsynth.seeds import stream
     from gpsynth.simulation import Trajectory, simulate
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
     from gpsynth.tracing import trace, where, wrap_angle
+    from gpsynth.tradeoffs import Tradeoffs, synthesize_tradeoffs
+    from gpsynth.units import UnitReport, check_units
     from gpsynth.variational_ga import VariationalGA
     from gpsynth.verify.robustness import Robustness, assess
     from gpsynth.verify.stress import Stress
@@ -42,12 +48,15 @@ _HOME = {
     "random_draws": "draws",
     "CartesianEncoding": "encodings.cartesian",
     "ParameterSpace": "encodings.parameters",
+    "Rules": "encodings.rules",
+    "TemplateEncoding": "encodings.template",
     "TreeEncoding": "encodings.tree",
     "VariationalEncoding": "encodings.variational",
     "Epochs": "epochs",
     "Evaluator": "evaluate",
     "Rollouts": "evaluate",
     "Law": "law",
+    "Objective": "objective",
     "CMAES": "optimizers",
     "NSGA2": "optimizers",
     "PSO": "optimizers",
@@ -60,6 +69,7 @@ _HOME = {
     "Obstacles": "problem",
     "Problem": "problem",
     "Program": "program",
+    "refit": "refitting",
     "Schedule": "schedule",
     "stream": "seeds",
     "Trajectory": "simulation",
@@ -74,6 +84,10 @@ _HOME = {
     "Robustness": "verify.robustness",
     "assess": "verify.robustness",
     "Stress": "verify.stress",
+    "Tradeoffs": "tradeoffs",
+    "synthesize_tradeoffs": "tradeoffs",
+    "UnitReport": "units",
+    "check_units": "units",
 }  # public name -> module; loaded on first use, so that `import gpsynth` does not wait for numba
 
 __all__ = [
@@ -88,6 +102,7 @@ __all__ = [
     "Evaluator",
     "GpsynthError",
     "Law",
+    "Objective",
     "Obstacles",
     "ParameterSpace",
     "Plan",
@@ -97,26 +112,33 @@ __all__ = [
     "Program",
     "Robustness",
     "Rollouts",
+    "Rules",
     "Schedule",
     "Stress",
     "StructureSearch",
     "SynthesisResult",
+    "TemplateEncoding",
+    "Tradeoffs",
     "Trajectory",
     "TreeEncoding",
+    "UnitReport",
     "VariationalEncoding",
     "VariationalGA",
     "__version__",
     "assess",
     "bind",
+    "check_units",
     "compose",
     "crossed",
     "minimize",
     "plan",
     "random_draws",
+    "refit",
     "simplify",
     "simulate",
     "stream",
     "synthesize",
+    "synthesize_tradeoffs",
     "trace",
     "where",
     "wrap_angle",

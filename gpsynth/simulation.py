@@ -1,6 +1,8 @@
 """One trajectory, for people: the same kernel as `evaluate`, with everything it passes through kept."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,14 +12,20 @@ from gpsynth.evaluate import Evaluator, check_law, numbers, periods_of, roll
 from gpsynth.kernels import rollout
 from gpsynth.kernels.layout import Lanes, sealed
 from gpsynth.law import Law
+from gpsynth.plant import Plant
+from gpsynth.plotting import plot_trajectory
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule
+
+if TYPE_CHECKING:
+    from gpsynth.plotting import Axes
 
 
 @dataclass(frozen=True)
 class Trajectory:
     """A closed loop in time, N control periods long."""
 
+    plant: Plant
     t: Floats  # (N + 1,) s
     x: Floats  # (N + 1, n)
     u: Floats  # (N, m) computed at each tick and held over the period; with a delay it acts that much later
@@ -25,6 +33,15 @@ class Trajectory:
     arrival: float  # s, infinity if the goal is not reached
     cost: float  # running cost, infinity if the rollout diverged
     clearance: float  # m, smallest along the path, robot radius deducted; infinity without obstacles
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name -> unit of the states, then of the controls."""
+        return {**self.plant.states, **{name: unit for name, (unit, _, _) in self.plant.controls.items()}}
+
+    def plot(self, *, shown: Sequence[str] = (), ax: "Axes | None" = None) -> "Axes":
+        """States over time, or those states and controls that are to be `shown` (`gpsynth.plotting`)."""
+        return plot_trajectory(self, shown=shown, ax=ax)
 
 
 def simulate(  # noqa: PLR0913 names each choice as a keyword
@@ -67,10 +84,11 @@ def simulate(  # noqa: PLR0913 names each choice as a keyword
     )
     controls = len(problem.plant.control_names)
     trace = np.empty((1, periods + 1, 2 * states + controls))
-    result = roll(evaluator, law.program, sealed(lanes), horizon, trace, reach)[0]
+    result = roll(evaluator, law.program, sealed(lanes), evaluator.until(horizon, reach=reach), trace)[0]
     ticks = round(result[rollout.END] / problem.period) + 1
     path = trace[0, :ticks]
     return Trajectory(
+        plant=problem.plant,
         t=np.arange(ticks) * problem.period,
         x=path[:, :states],
         u=path[:-1, states : states + controls],

@@ -1,7 +1,10 @@
 """Stage 1 on a plant whose answer is known: the double integrator."""
 
+import csv
+
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
@@ -10,10 +13,11 @@ from gpsynth.epochs import Epochs
 from gpsynth.errors import OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.islands import Islands
+from gpsynth.objective import costs_of
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import costs_of, synthesize
+from gpsynth.synthesis import synthesize
 from gpsynth.variational_ga import VariationalGA
 
 PLANT = Plant(
@@ -88,6 +92,19 @@ def test_front_entries_are_scored_on_the_whole_problem() -> None:
         (entry.cost for entry in result.front), reverse=True
     )
     assert result.table().count("\n") >= len(result.front)
+
+
+def test_the_front_is_a_table_a_file_and_a_picture(tmp_path) -> None:
+    problem = quadratic()
+    result = synthesize(problem, encoding(problem), seed=2, budget=450, tuning=0)
+    result.to_csv(tmp_path / "front.csv")
+    with (tmp_path / "front.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["cost"]) for row in rows] == [entry.cost for entry in result.front]
+    assert [row["formulas"] for row in rows] == ["; ".join(entry.law.formulas()) for entry in result.front]
+    assert [row["complexity"] for row in result.rows()] == [entry.complexity for entry in result.front]
+    axes = result.plot(ax=Figure().add_subplot())
+    assert axes.lines[1].get_ydata().tolist() == [entry.cost for entry in result.front]
 
 
 def test_threads_do_not_change_the_result() -> None:

@@ -11,6 +11,8 @@ from gpsynth.encodings.complete_tree import basic_tree
 from gpsynth.encodings.layers import basic_layers
 from gpsynth.encodings.network_operator_matrix import Matrix
 from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.rules import Rules
+from gpsynth.encodings.template import TemplateEncoding
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.operations import GP_NAMES, operation
@@ -53,7 +55,28 @@ ENCODINGS = {
     "tree": TreeEncoding(("x", "y", "z"), ("u", "v"), GP_NAMES, NUMBERS),
     "tree-one-output": TreeEncoding(("x", "y"), ("u",), PLAIN, ParameterSpace(12, -4.0, 4.0)),
     "tree-no-numbers": TreeEncoding(("x",), ("u", "v"), PLAIN),
+    "tree-rules": TreeEncoding(
+        ("x", "y"),
+        ("u", "v"),
+        PLAIN,
+        NUMBERS,
+        rules=Rules(
+            forbid={"sin": ("sin", "tanh"), "tanh": ("square",)},
+            limits={"tanh": 1, "mul": 3},
+            weights={"sin": 4},
+        ),
+    ),
+    "tree-units": TreeEncoding(
+        ("x", "y", "phi"),
+        ("u", "v"),
+        PLAIN,
+        ParameterSpace(8, -4.0, 4.0),
+        units={"x": "m", "y": "m/s", "phi": "rad", "u": "m", "v": "m/s^2"},
+    ),
     "tree-unary": TreeEncoding(("x",), ("u",), UNARY, max_size=6),
+    "template": TemplateEncoding(
+        TreeEncoding(("x", "y"), ("g", "h"), PLAIN, NUMBERS), lambda f, g, h: (g, f.x * h), ("u", "v")
+    ),
 }
 
 

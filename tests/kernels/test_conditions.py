@@ -144,8 +144,8 @@ def test_blocks_and_threads_change_no_bit(block: int, threads: int) -> None:
     on = problem(starts, draws, horizon=1.0)
     first = Evaluator(on).of_program(law(on).program, np.empty((1, 0)))
     other = Evaluator(on, threads=threads, block=block).of_program(law(on).program, np.empty((1, 0)))
-    for name, values in vars(first).items():
-        assert values.tobytes() == getattr(other, name).tobytes(), name
+    for name in set(vars(first)) - {"paths"}:
+        assert getattr(first, name).tobytes() == getattr(other, name).tobytes(), name
 
 
 def test_nominal_draws_change_no_bit() -> None:
