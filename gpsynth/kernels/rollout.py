@@ -115,7 +115,6 @@ def advance(
 
     If `bends`, the first and the last derivatives of the step are kept in the rows from `slope` on.
     """
-    widest_vectors()
     first, last = code.ends[0] if clock.hold else 0, len(clock.b) - 1
     for i in range(n):
         for lane in range(0, count, WIDTH):
@@ -144,7 +143,6 @@ def advance(
 @part
 def proceed(w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float, ahead: float) -> None:
     """Add a stage's derivatives to the sum, and lead the state to the next stage."""
-    widest_vectors()
     for i in range(n):
         for lane in range(0, count, WIDTH):
             rate = take(w, code.rates[i], lane)
@@ -155,7 +153,6 @@ def proceed(w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float
 @part
 def finish(w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float) -> None:
     """Add the last stage's derivatives to the sum, which is the new state of the lanes that run."""
-    widest_vectors()
     for i in range(n):
         for lane in range(0, count, WIDTH):
             end = take(w, rows.sum + i, lane) + weight * take(w, code.rates[i], lane)
@@ -174,7 +171,6 @@ def copy(w: Floats, sources: Ints, first: int, n: int, count: int) -> None:
 @part
 def judge(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, time: float) -> int:
     """Mark the lanes that have arrived or diverged at `time`; the number of lanes still running."""
-    widest_vectors()
     execute(code.instructions, code.ends[1], code.ends[2], w, count)
     for lane in range(0, count, WIDTH):
         alive, diverged = take(w, rows.alive, lane), take(w, rows.diverged, lane)
@@ -272,6 +268,7 @@ def roll(
     `trace` (L, periods + 1, n + m + n) takes state, control and target at each tick unless its length is 0; what a
     lane does after its end is not recorded. The control at the last tick is the one that would be applied next.
     """
+    widest_vectors()
     n = lanes.starts.shape[1]
     w = workspace(rows.total, -(-min(block, last - first) // WIDTH) * WIDTH)
     passed = np.empty(block, np.int64)
