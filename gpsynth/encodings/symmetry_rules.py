@@ -2,7 +2,7 @@
 
 A mirrored robot turns the other way: where left and right change places, some inputs and outputs change sign and the
 others stay. A law that breaks such a symmetry only fits its training. Where a tree breaks one, what does not fit is
-left out, and as much as possible stays.
+left out, and as much as possible stays. Where a function jumps, as sgn does at 0, its value there may be on one side.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -43,8 +43,8 @@ class TreeEncoding:
     """One tree per output; subtrees that occur twice are computed once.
 
     A child that is higher than `max_height`, larger than `max_size` nodes or has more numbers than `space.count` is
-    replaced by its parent; `rules` always hold. Where `symmetries` are given (+ or - for each input and output, one sign
-    a symmetry) every formula keeps them; where `units` are, the units of every formula fit, numbers having any unit.
+    replaced by its parent; `rules` always hold. Where `symmetries` are given (+ or - for each input and output, one
+    sign a symmetry) every formula keeps them; where `units` are, all units fit, numbers having any unit.
     """
 
     inputs: tuple[str, ...]

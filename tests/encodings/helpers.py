@@ -73,6 +73,21 @@ ENCODINGS = {
         ParameterSpace(8, -4.0, 4.0),
         units={"x": "m", "y": "m/s", "phi": "rad", "u": "m", "v": "m/s^2"},
     ),
+    "tree-symmetries": TreeEncoding(
+        ("x", "y", "z"),
+        ("u", "v"),
+        GP_NAMES,
+        ParameterSpace(8, -4.0, 4.0),
+        symmetries={"x": "+-", "y": "--", "z": "-+", "u": "+-", "v": "-+"},
+    ),
+    "tree-symmetries-units": TreeEncoding(
+        ("x", "y"),
+        ("u",),
+        PLAIN,
+        ParameterSpace(8, -4.0, 4.0),
+        symmetries={"x": "-", "y": "+", "u": "-"},
+        units={"x": "m", "y": "s", "u": "m/s"},
+    ),
     "tree-unary": TreeEncoding(("x",), ("u",), UNARY, max_size=6),
     "template": TemplateEncoding(
         TreeEncoding(("x", "y"), ("g", "h"), PLAIN, NUMBERS), lambda f, g, h: (g, f.x * h), ("u", "v")
