@@ -55,6 +55,13 @@ class _Plans(NamedTuple):
     reach: float = 0.0
 
 
+class _Watch(NamedTuple):
+    """What is kept of the rollouts, and above which sum of costs they are given up."""
+
+    trace: Floats = _NO_TRACE
+    bound: float = np.inf
+
+
 _NO_PLAN = _Plans(frozen(np.empty((1, 0, 1))), frozen(np.empty((1, 0))))
 
 
@@ -79,10 +86,14 @@ class Evaluator:
         if not 0.0 <= self.margin < np.inf:
             raise ProblemError(f"the margin must be finite and at least 0 m, got {self.margin}")
 
-    def of_program(self, program: Program, parameters: Floats, *, paths: bool = False) -> Rollouts:
+    def of_program(
+        self, program: Program, parameters: Floats, *, bound: float = np.inf, paths: bool = False
+    ) -> Rollouts:
         """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p).
 
-        With `paths` everything they pass through is kept.
+        What of one vector costs more than `bound` in the mean over the starts need not be rolled out to the end: it
+        ends early where costs cannot be negative, and costs infinity. With `paths` everything that the rollouts pass
+        through is kept.
         """
         problem = self.problem
         if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
@@ -95,7 +106,12 @@ class Evaluator:
             raise ProblemError(
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
-        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors), paths)
+        bounded = len(vectors) == 1 and problem.costs_nonnegative
+        watch = _Watch(
+            self._trace(len(vectors)) if paths else _NO_TRACE,
+            bound * len(problem.starts) if bounded else np.inf,
+        )
+        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors), watch)
 
     def of_schedules(
         self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None, *, reach: float = 0.0
@@ -134,7 +150,7 @@ class Evaluator:
         plans: _Plans,
         horizon: float,
         candidates: int,
-        paths: bool = False,
+        watch: _Watch = _Watch(),
     ) -> Rollouts:
         """One candidate a parameter vector, or a plan."""
         starts = len(self.problem.starts)
@@ -150,15 +166,16 @@ class Evaluator:
             points=np.ascontiguousarray(plans.points, dtype=np.float64),
             ends=np.ascontiguousarray(plans.ends, dtype=np.float64),
         )
-        trace = self._trace(len(lane), horizon) if paths else _NO_TRACE
-        result = roll(self, program, sealed(lanes), horizon, trace, plans.reach)
+        result = roll(self, program, sealed(lanes), horizon, watch.trace, plans.reach, watch.bound)
         rollouts = _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
-        return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
+        return replace(rollouts, paths=self._paths(watch.trace, candidates)) if len(watch.trace) else rollouts
 
-    def _trace(self, lanes: int, horizon: float) -> Floats:
-        """Room for states, controls and targets at each tick."""
-        width = 2 * self.problem.starts.shape[1] + len(self.problem.plant.controls)
-        return np.full((lanes, periods_of(self.problem, horizon) + 1, width), np.nan)
+    def _trace(self, candidates: int) -> Floats:
+        """Room for states, controls and targets at each tick, (N S, K + 1, n + m + n)."""
+        problem = self.problem
+        width = 2 * problem.starts.shape[1] + len(problem.plant.controls)
+        ticks = periods_of(problem, problem.horizon) + 1
+        return np.full((candidates * len(problem.starts), ticks, width), np.nan)
 
     def _paths(self, trace: Floats, candidates: int) -> Paths:
         table = trace.reshape(candidates, -1, *trace.shape[1:])
@@ -224,7 +241,7 @@ class Evaluator:
         problem, tableau = self.problem, TABLEAUS[self.problem.method]
         substeps = round(problem.period / problem.step)
         flags = (problem.hold, problem.stop)
-        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0)
+        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0, np.inf)
 
     @cached_property
     def goals(self) -> Floats:
@@ -233,13 +250,19 @@ class Evaluator:
 
 
 def roll(
-    evaluator: Evaluator, program: Program, lanes: Lanes, horizon: float, trace: Floats, reach: float = 0.0
+    evaluator: Evaluator,
+    program: Program,
+    lanes: Lanes,
+    horizon: float,
+    trace: Floats,
+    reach: float = 0.0,
+    bound: float = np.inf,
 ) -> Floats:
     """The kernel's result (L, ...) for these lanes, computed in slices of whole blocks by the evaluator's threads."""
     if not reach >= 0.0:
         raise ProblemError(f"the reach must be at least 0, got {reach}")
     rows, code = pack(evaluator.frame, instructions(program), len(program.parameters))
-    clock = evaluator.clock._replace(periods=periods_of(evaluator.problem, horizon), reach=reach)
+    clock = evaluator.clock._replace(periods=periods_of(evaluator.problem, horizon), reach=reach, bound=bound)
     total, block = len(lanes.picks), evaluator.block
     states, terminals = lanes.starts.shape[1], len(code.arrival) - 1
     result = np.empty((total, rollout.TERMINAL + terminals + states))

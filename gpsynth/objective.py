@@ -57,7 +57,16 @@ def as_objective(given: Objective | Function | None) -> Objective:
 
 
 def score(
-    evaluator: Evaluator, program: Program, vectors: Floats, objective: Objective = PROBLEMS_OWN
+    evaluator: Evaluator,
+    program: Program,
+    vectors: Floats,
+    objective: Objective = PROBLEMS_OWN,
+    *,
+    bound: float = np.inf,
 ) -> Floats:
-    """Costs (N, S) of a law under N parameter vectors (N, p)."""
-    return objective(evaluator.of_program(program, vectors, paths=objective.paths))
+    """Costs (N, S) of a law under N parameter vectors (N, p).
+
+    A mean cost above `bound` may come out as infinity; only the problem's own is known well enough to use that.
+    """
+    bound = bound if objective is PROBLEMS_OWN else np.inf
+    return objective(evaluator.of_program(program, vectors, bound=bound, paths=objective.paths))

@@ -16,6 +16,7 @@ from gpsynth.errors import ProblemError
 from gpsynth.plant import Plant
 from gpsynth.plant_parts import TIME
 from gpsynth.program import Program
+from gpsynth.signs import nonnegative
 from gpsynth.tracing import Names, input_names, takes_time, trace, wrap_angle
 
 METHODS = ("euler", "heun", "rk4")
@@ -159,6 +160,12 @@ class Problem:
         if self.draws is not None and self.draws.parameters.shape[1] > 0:
             return self.draws.parameters
         return frozen(np.tile(self.plant.nominal, (len(self.starts), 1)))
+
+    @cached_property
+    def costs_nonnegative(self) -> bool:
+        """Whether the running cost and all terminal costs are proven to be at least 0."""
+        terminal = () if self.terminal is None else nonnegative(self.terminal)
+        return all((*nonnegative(self.running), *terminal))
 
     @cached_property
     def arrival(self) -> Program:

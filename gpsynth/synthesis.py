@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from importlib.metadata import version
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -18,6 +19,7 @@ from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.guesses import Guess, genomes_of
+from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
 from gpsynth.objective import PROBLEMS_OWN, Function, Objective, as_objective, score
 from gpsynth.optimizers import CMAES, Progress
@@ -112,6 +114,7 @@ def synthesize(
     trials: Sequence[Problem] = (),
     folder: str | os.PathLike[str] | None = None,
     resume: bool = False,
+    islands: Islands | None = None,
     threads: int = 2,
     progress: bool = False,
     callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
@@ -133,20 +136,29 @@ def synthesize(
     """
     check_encoding(problem, encoding)
     wanted = as_objective(objective)
-    cost = batch_cost(Evaluator(rough or problem), threads, wanted)
+    cost = BatchCost(rough or problem, 1 if islands else threads, wanted)
     strategy = search or StructureSearch(encoding)
-    strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
-    found, reason = run_search(
-        cost,
-        strategy,
-        None if folder is None else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, seed)),
-        resume=resume,
-        seed=seed,
-        budget=budget,
-        path=(SEARCH,),
-        progress=progress,
-        callback=callback,
-    )
+    if guesses:
+        strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
+    arguments: Any = {
+        "seed": seed,
+        "budget": budget,
+        "path": (SEARCH,),
+        "progress": progress,
+        "callback": callback,
+    }
+    if islands is None:
+        checkpoint = (
+            None
+            if folder is None
+            else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, seed))
+        )
+        found, reason = run_search(cost, strategy, checkpoint, resume=resume, **arguments)
+    elif folder is not None or resume:
+        raise ProblemError("islands leave no checkpoints; give either islands or a folder")
+    else:
+        merged = search_islands(cost, strategy, islands, workers=threads, **arguments)
+        found, reason = merged.progress, merged.reason
     tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
 
@@ -181,22 +193,33 @@ def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:
         )
 
 
-def batch_cost(
-    evaluator: Evaluator, threads: int, objective: Objective = PROBLEMS_OWN
-) -> Callable[[Sequence[Candidate[Any]]], Floats]:
+@dataclass(frozen=True, eq=False)
+class BatchCost:
     """The cost function of a structure search: candidates with one program go to the kernel together."""
 
-    def cost(batch: Sequence[Candidate[Any]]) -> Floats:
+    problem: Problem
+    threads: int = 1
+    objective: Objective = PROBLEMS_OWN
+
+    def __call__(self, batch: Sequence[Candidate[Any]]) -> Floats:
+        """Costs (N, S) of N candidates."""
         groups = [list(group) for _, group in groupby(batch, key=lambda candidate: id(candidate.program))]
 
         def of_group(group: list[Candidate[Any]]) -> Floats:
             values = np.array([candidate.values for candidate in group]).reshape(len(group), -1)
-            return score(evaluator, group[0].program, values, objective)
+            bound = max(candidate.bound for candidate in group)
+            return score(self.evaluator, group[0].program, values, self.objective, bound=bound)
 
-        with ThreadPoolExecutor(threads) as pool:
+        with ThreadPoolExecutor(self.threads) as pool:
             return np.concatenate(list(pool.map(of_group, groups)))
 
-    return cost
+    def __reduce__(self) -> tuple[type["BatchCost"], tuple[Problem, int, Objective]]:
+        return BatchCost, (self.problem, self.threads, self.objective)
+
+    @cached_property
+    def evaluator(self) -> Evaluator:
+        """One of each process: what it caches would not survive the way to another."""
+        return Evaluator(self.problem)
 
 
 def _tuned(

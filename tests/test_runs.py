@@ -85,7 +85,7 @@ def test_ctrl_c_gives_what_was_found_so_far(tmp_path, whole):
 
 
 def test_ctrl_c_before_anything_was_found_ends_the_run(monkeypatch):
-    def interrupt(*arguments):
+    def interrupt(*arguments, **settings):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("gpsynth.synthesis.score", interrupt)

@@ -81,6 +81,7 @@ class Clock(NamedTuple):
     reach: (
         float  # distance at which a point counts as reached and the next is due at once; 0: dwell times alone
     )
+    bound: float  # of the running cost of a block's lanes together: beyond it the block ends, at a cost of infinity
 
 
 class World(NamedTuple):
@@ -97,7 +98,9 @@ ROWS = types.NamedUniTuple(_INTEGER, len(Rows._fields), Rows)
 CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, INTEGERS, INTEGERS), Code)
 LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
 CONDITIONS = types.NamedTuple((MATRIX, INTEGERS, _INTEGER, VECTOR, TENSOR, INTEGERS), Conditions)
-CLOCK = types.NamedTuple((MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER), Clock)
+CLOCK = types.NamedTuple(
+    (MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER, _NUMBER), Clock
+)
 WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
 
 Group = TypeVar("Group", bound=tuple[Any, ...])

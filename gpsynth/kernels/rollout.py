@@ -183,6 +183,19 @@ def judge(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, t
     return running
 
 
+@kernel(types.boolean(OUT_MATRIX, ROWS, _NUMBER, _INTEGER))
+def hopeless(w: Floats, rows: Rows, bound: float, count: int) -> bool:
+    """Whether the lanes together cost more than `bound` already or one has diverged; then all of them cost infinity."""
+    total, lost = 0.0, 0.0
+    for lane in range(count):
+        total += w[rows.cost, lane]
+        lost += w[rows.diverged, lane]
+    if total <= bound and lost == 0.0:
+        return False
+    w[rows.cost, :] = np.inf
+    return True
+
+
 @kernel(types.void(OUT_MATRIX, ROWS, CODES, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX))
 def store(w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, result: Floats) -> None:
     """Write the block's results, one row a lane; what diverged costs +inf."""
@@ -263,6 +276,8 @@ def roll(
             if lanes.ends.shape[1] > 0:
                 retarget(w, rows, code, lanes, clock, passed, shift, begin, count, time)
             running = judge(w, rows, code, clock, n, count, time)
+            if clock.bound < np.inf and hopeless(w, rows, clock.bound, count):
+                break
             if len(given.noise) > 0:
                 measure(w, rows, lanes, given, begin, count, period)
             if clock.hold or len(trace) > 0:
