@@ -55,13 +55,6 @@ class _Plans(NamedTuple):
     reach: float = 0.0
 
 
-class _Watch(NamedTuple):
-    """What is kept of the rollouts, and above which sum of costs they are given up."""
-
-    trace: Floats = _NO_TRACE
-    bound: float = np.inf
-
-
 _NO_PLAN = _Plans(frozen(np.empty((1, 0, 1))), frozen(np.empty((1, 0))))
 
 
@@ -91,9 +84,9 @@ class Evaluator:
     ) -> Rollouts:
         """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p).
 
-        What of one vector costs more than `bound` in the mean over the starts need not be rolled out to the end: it
-        ends early where costs cannot be negative, and costs infinity. With `paths` everything that the rollouts pass
-        through is kept.
+        A single vector that costs more than `bound` in the mean over the starts need not be rolled out to the end: it
+        ends early where costs cannot be negative, and costs infinity. With `paths` everything the rollouts pass through
+        is kept.
         """
         problem = self.problem
         if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
@@ -107,11 +100,9 @@ class Evaluator:
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
         bounded = len(vectors) == 1 and problem.costs_nonnegative
-        watch = _Watch(
-            self._trace(len(vectors)) if paths else _NO_TRACE,
-            bound * len(problem.starts) if bounded else np.inf,
-        )
-        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors), watch)
+        total = bound * len(problem.starts) if bounded else np.inf
+        clock = self.until(problem.horizon, bound=total)
+        return self._roll(program, vectors, _NO_PLAN, clock, len(vectors), paths=paths)
 
     def of_schedules(
         self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None, *, reach: float = 0.0
@@ -125,7 +116,8 @@ class Evaluator:
         check_law(self.problem, law)
         plans = self._plans(points, dwell, reach)
         horizon = self.problem.horizon if horizon is None else horizon
-        return self._roll(law.program, law.parameters[np.newaxis], plans, horizon, len(plans.points))
+        clock = self.until(horizon, reach=reach)
+        return self._roll(law.program, law.parameters[np.newaxis], plans, clock, len(plans.points))
 
     def _plans(self, points: Floats, dwell: Floats, reach: float) -> _Plans:
         places, times = numbers("points", points), numbers("dwell times", dwell)
@@ -148,9 +140,10 @@ class Evaluator:
         program: Program,
         vectors: Floats,
         plans: _Plans,
-        horizon: float,
+        clock: Clock,
         candidates: int,
-        watch: _Watch = _Watch(),
+        *,
+        paths: bool = False,
     ) -> Rollouts:
         """One candidate a parameter vector, or a plan."""
         starts = len(self.problem.starts)
@@ -166,16 +159,15 @@ class Evaluator:
             points=np.ascontiguousarray(plans.points, dtype=np.float64),
             ends=np.ascontiguousarray(plans.ends, dtype=np.float64),
         )
-        result = roll(self, program, sealed(lanes), horizon, watch.trace, plans.reach, watch.bound)
+        trace = self._trace(len(lane), clock.periods) if paths else _NO_TRACE
+        result = roll(self, program, sealed(lanes), clock, trace)
         rollouts = _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
-        return replace(rollouts, paths=self._paths(watch.trace, candidates)) if len(watch.trace) else rollouts
+        return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
 
-    def _trace(self, candidates: int) -> Floats:
-        """Room for states, controls and targets at each tick, (N S, K + 1, n + m + n)."""
-        problem = self.problem
-        width = 2 * problem.starts.shape[1] + len(problem.plant.controls)
-        ticks = periods_of(problem, problem.horizon) + 1
-        return np.full((candidates * len(problem.starts), ticks, width), np.nan)
+    def _trace(self, lanes: int, periods: int) -> Floats:
+        """Room for states, controls and targets at each tick."""
+        width = 2 * self.problem.starts.shape[1] + len(self.problem.plant.controls)
+        return np.full((lanes, periods + 1, width), np.nan)
 
     def _paths(self, trace: Floats, candidates: int) -> Paths:
         table = trace.reshape(candidates, -1, *trace.shape[1:])
@@ -243,26 +235,21 @@ class Evaluator:
         flags = (problem.hold, problem.stop)
         return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0, np.inf)
 
+    def until(self, horizon: float, *, reach: float = 0.0, bound: float = np.inf) -> Clock:
+        """The time grid up to the horizon (s); raises ProblemError unless that, and the reach, are sensible numbers."""
+        if not reach >= 0.0:
+            raise ProblemError(f"the reach must be at least 0, got {reach}")
+        return self.clock._replace(periods=periods_of(self.problem, horizon), reach=reach, bound=bound)
+
     @cached_property
     def goals(self) -> Floats:
         """The goal of each start (S, n)."""
         return frozen(np.broadcast_to(self.problem.goal, self.problem.starts.shape))
 
 
-def roll(
-    evaluator: Evaluator,
-    program: Program,
-    lanes: Lanes,
-    horizon: float,
-    trace: Floats,
-    reach: float = 0.0,
-    bound: float = np.inf,
-) -> Floats:
+def roll(evaluator: Evaluator, program: Program, lanes: Lanes, clock: Clock, trace: Floats) -> Floats:
     """The kernel's result (L, ...) for these lanes, computed in slices of whole blocks by the evaluator's threads."""
-    if not reach >= 0.0:
-        raise ProblemError(f"the reach must be at least 0, got {reach}")
     rows, code = pack(evaluator.frame, instructions(program), len(program.parameters))
-    clock = evaluator.clock._replace(periods=periods_of(evaluator.problem, horizon), reach=reach, bound=bound)
     total, block = len(lanes.picks), evaluator.block
     states, terminals = lanes.starts.shape[1], len(code.arrival) - 1
     result = np.empty((total, rollout.TERMINAL + terminals + states))

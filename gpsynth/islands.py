@@ -7,8 +7,8 @@ what loses is merged, not thrown away. The best island merges with the worst, th
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from dataclasses import dataclass
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import joblib
 from joblib.externals.loky.process_executor import BrokenProcessPool
@@ -16,7 +16,7 @@ from joblib.externals.loky.process_executor import BrokenProcessPool
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers import Progress, Result, minimize
 from gpsynth.optimizers.bar import bar
-from gpsynth.structure_search import Cost, Individual, SearchState, StructureSearch
+from gpsynth.structure_search import Cost, SearchState, StructureSearch
 
 G = TypeVar("G")
 Callback = Callable[[Progress[SearchState[Any]]], bool | None]
@@ -42,101 +42,119 @@ class Islands:
         return self.count.bit_length()
 
 
-def search_islands(
+@dataclass(frozen=True, eq=False)
+class Archipelago(Generic[G]):
+    """Where a search on islands stands between two levels; the best island comes first."""
+
+    level: int  # levels that are done
+    islands: tuple[Progress[SearchState[G]] | None, ...]
+    history: tuple[tuple[int, float], ...] = ()  # (evaluations, best cost) after each level
+
+    @property
+    def evaluations(self) -> int:
+        """Evaluations of all islands together."""
+        return sum(map(_spent, self.islands))
+
+    @property
+    def state(self) -> SearchState[G]:
+        """The search of the best island."""
+        best = self.islands[0]
+        return SearchState((), ()) if best is None else best.state
+
+
+class Found(NamedTuple):
+    """Where the islands have come, and why they ended."""
+
+    progress: Archipelago[Any]
+    reason: str
+
+
+def search_islands(  # noqa: PLR0913 takes what `minimize` takes
     cost: Cost,
-    strategy: StructureSearch[G],
-    islands: Islands,
+    strategy: StructureSearch[Any],
     *,
+    islands: Islands,
     seed: int,
     budget: int,
     path: tuple[int, ...],
     workers: int = 1,
     progress: bool = False,
     callback: Callback | None = None,
-) -> Result[SearchState[G], Individual[G]]:
+    checkpoint: Callable[[Archipelago[Any]], None] | None = None,
+    resume: Archipelago[Any] | None = None,
+) -> Found:
     """The search after all levels, each of which may spend an equal share of the budget (evaluations).
 
     Islands run in `workers` processes through joblib, so `joblib.parallel_config(backend="dask")` sends them to a
-    cluster; the same seed gives the same result wherever they run. `callback` and the progress bar hear of each level.
-    Raises OptimizerError if an island's share is less than one generation.
+    cluster; the same seed gives the same result wherever they run. `checkpoint`, `callback` and the progress bar hear
+    of each level. Raises OptimizerError if an island's share is less than one generation.
     """
-    now: list[Progress[SearchState[G]] | None] = [None] * islands.count
-    history: list[tuple[int, float]] = []
+    now = resume or Archipelago(0, (None,) * islands.count)
+    reason = "budget spent"
     with bar(budget, progress) as show:
-        for level in range(islands.levels):
-            share = (budget - sum(map(_spent, now))) // ((islands.levels - level) * len(now))
-            found = _level(cost, strategy, now, seed=seed, path=(*path, level), share=share, workers=workers)
-            found.sort(key=lambda each: each.cost)
-            whole = _summed([each.progress for each in found], found[0].state)
-            history.append((whole.evaluations, found[0].cost))
-            show(*history[-1])
-            if callback is not None and callback(replace(whole, history=tuple(history))):
-                found[0] = replace(found[0], reason="stopped by callback")
-                break
-            now = [_merged(strategy, pair) for pair in _pairs([each.progress for each in found])]
-    return replace(found[0], evaluations=whole.evaluations, nonfinite=whole.nonfinite, history=tuple(history))
+        while now.level < islands.levels and not reason.startswith("stopped"):
+            share = (budget - now.evaluations) // ((islands.levels - now.level) * len(now.islands))
+            tasks = [
+                joblib.delayed(minimize)(
+                    *(cost, strategy),
+                    seed=seed,
+                    budget=_spent(before) + share,
+                    path=(*path, now.level, number),
+                    resume=before,
+                )
+                for number, before in enumerate(now.islands)
+            ]
+            ranked = sorted(_results(tasks, min(workers, len(tasks))), key=lambda each: each.cost)
+            now = _next(strategy, now, ranked)
+            show(*now.history[-1])
+            if checkpoint is not None:
+                checkpoint(now)
+            if callback is not None and callback(_whole(now, ranked[0].state)):
+                reason = "stopped by callback"
+    return Found(now, reason)
 
 
-def _level(
-    cost: Cost,
-    strategy: StructureSearch[G],
-    now: Sequence[Progress[SearchState[G]] | None],
-    *,
-    seed: int,
-    path: tuple[int, ...],
-    share: int,
-    workers: int,
-) -> list[Result[SearchState[G], Individual[G]]]:
-    """All islands of a level, each from where it stands, with `share` more evaluations."""
-    tasks = [
-        joblib.delayed(_island)(cost, strategy, before, seed=seed, path=(*path, number), share=share)
-        for number, before in enumerate(now)
-    ]
-    for trial in range(TRIES):
+def _results(tasks: Sequence[Any], workers: int) -> list[Any]:
+    for _ in range(TRIES):
         try:
-            found: list[Any] = joblib.Parallel(n_jobs=min(workers, len(tasks)))(tasks)
-        except BrokenProcessPool:
-            if trial == TRIES - 1:
-                raise OptimizerError(f"the worker processes of the islands died {TRIES} times") from None
-        else:
-            break
-    return found
+            return list(joblib.Parallel(n_jobs=workers)(tasks))
+        except BrokenProcessPool:  # a level is a pure function: nothing changes if it is tried again
+            continue
+    raise OptimizerError(
+        f"the processes that the islands run in died {TRIES} times, for lack of memory perhaps"
+    )
 
 
-def _island(
-    cost: Cost,
-    strategy: StructureSearch[G],
-    before: Progress[SearchState[G]] | None,
-    *,
-    seed: int,
-    path: tuple[int, ...],
-    share: int,
-) -> Result[SearchState[G], Individual[G]]:
-    return minimize(cost, strategy, seed=seed, budget=_spent(before) + share, path=path, resume=before)
+def _next(
+    strategy: StructureSearch[Any], before: Archipelago[Any], ranked: Sequence[Result[Any, Any]]
+) -> Archipelago[Any]:
+    """After a level: the best island merged with the worst, the second best with the second worst."""
+    found = [each.progress for each in ranked]
+    half = len(found) // 2
+    pairs = list(zip(found[:half], found[: half - 1 : -1], strict=True)) if half else [tuple(found)]
+    islands = tuple(
+        _summed(pair, strategy.merged([each.state for each in pair]), history=()) for pair in pairs
+    )
+    spent = sum(each.evaluations for each in found)
+    return Archipelago(before.level + 1, islands, (*before.history, (spent, ranked[0].cost)))
 
 
-def _spent(progress: Progress[Any] | None) -> int:
-    return 0 if progress is None else progress.evaluations
+def _whole(now: Archipelago[Any], best: SearchState[Any]) -> Progress[SearchState[Any]]:
+    return _summed([each for each in now.islands if each is not None], best, history=now.history)
 
 
-def _pairs(ranked: Sequence[Progress[SearchState[G]]]) -> list[tuple[Progress[SearchState[G]], ...]]:
-    """The best with the worst, the second best with the second worst; one island stays alone."""
-    half = len(ranked) // 2
-    return list(zip(ranked[:half], ranked[: half - 1 : -1], strict=True)) if half else [tuple(ranked)]
-
-
-def _merged(
-    strategy: StructureSearch[G], pair: Sequence[Progress[SearchState[G]]]
-) -> Progress[SearchState[G]]:
-    return _summed(pair, strategy.merged([each.state for each in pair]))
-
-
-def _summed(parts: Sequence[Progress[SearchState[G]]], state: SearchState[G]) -> Progress[SearchState[G]]:
+def _summed(
+    parts: Sequence[Progress[Any]], state: SearchState[Any], history: tuple[tuple[int, float], ...]
+) -> Progress[SearchState[Any]]:
     """What the parts have spent together, for a search that goes on from `state`."""
     return Progress(
         generation=max(each.generation for each in parts),
         evaluations=sum(each.evaluations for each in parts),
         nonfinite=sum(each.nonfinite for each in parts),
-        history=(),
+        history=history,
         state=state,
     )
+
+
+def _spent(progress: Progress[Any] | None) -> int:
+    return 0 if progress is None else progress.evaluations

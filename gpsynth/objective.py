@@ -61,12 +61,11 @@ def score(
     program: Program,
     vectors: Floats,
     objective: Objective = PROBLEMS_OWN,
-    *,
     bound: float = np.inf,
 ) -> Floats:
     """Costs (N, S) of a law under N parameter vectors (N, p).
 
-    A mean cost above `bound` may come out as infinity; only the problem's own is known well enough to use that.
+    A mean cost above `bound` may come out as infinity, which saves time where the costs are the problem's own.
     """
-    bound = bound if objective is PROBLEMS_OWN else np.inf
+    bound = bound if objective == PROBLEMS_OWN else np.inf
     return objective(evaluator.of_program(program, vectors, bound=bound, paths=objective.paths))

@@ -19,7 +19,7 @@ Callback = Callable[[Progress[Any]], bool | None]
 class Outcome(NamedTuple):
     """Where a search has come, and why it ended."""
 
-    progress: Progress[Any]
+    progress: Any  # with state, evaluations and history
     reason: str
 
 
@@ -28,6 +28,7 @@ def run_search(
     search: Search[Any, Any, Any],
     checkpoint: Checkpoint | None = None,
     *,
+    run: Callable[..., Any] = minimize,
     resume: bool = False,
     seed: int,
     budget: int,
@@ -35,7 +36,7 @@ def run_search(
     progress: bool = False,
     callback: Callback | None = None,
 ) -> Outcome:
-    """`minimize` with a checkpoint of the latest generation in a file, every few seconds and at the end.
+    """`minimize`, or a `run` like it, with a checkpoint in a file every few seconds and at the end.
 
     With `resume` it goes on from that file, and finds bit for bit what a run without interruption finds. Ctrl-C ends
     the search after its first generation and raises KeyboardInterrupt before. Raises FileError if the checkpoint cannot
@@ -43,10 +44,10 @@ def run_search(
     """
     if resume and checkpoint is None:
         raise FileError("there is no folder to resume from; name it, folder=...")
-    latest: list[Progress[Any]] = [checkpoint.read()] if checkpoint is not None and resume else []
+    latest: list[Any] = [checkpoint.read()] if checkpoint is not None and resume else []
     written = time.monotonic()
 
-    def keep(now: Progress[Any]) -> None:
+    def keep(now: Any) -> None:
         nonlocal written
         latest[:] = [now]
         if checkpoint is not None and time.monotonic() - written > EVERY:
@@ -54,7 +55,7 @@ def run_search(
             written = time.monotonic()
 
     try:
-        found = minimize(
+        found = run(
             cost,
             search,
             seed=seed,

@@ -84,7 +84,7 @@ def simulate(  # noqa: PLR0913 names each choice as a keyword
     )
     controls = len(problem.plant.control_names)
     trace = np.empty((1, periods + 1, 2 * states + controls))
-    result = roll(evaluator, law.program, sealed(lanes), horizon, trace, reach)[0]
+    result = roll(evaluator, law.program, sealed(lanes), evaluator.until(horizon, reach=reach), trace)[0]
     ticks = round(result[rollout.END] / problem.period) + 1
     path = trace[0, :ticks]
     return Trajectory(

@@ -73,7 +73,7 @@ class SearchState(Generic[G]):
     generation: int = 0
 
     def bound(self, born: int) -> float:
-        """The highest cost in the population among those no older than `born`: who costs more does not stay for long."""
+        """The highest cost among those no older than `born`: who costs more does not stay for long."""
         costs = (individual.cost for individual in self.population if individual.born >= born)
         return max(costs, default=inf)
 

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from importlib.metadata import version
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -22,7 +22,7 @@ from gpsynth.guesses import Guess, genomes_of
 from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
 from gpsynth.objective import PROBLEMS_OWN, Function, Objective, as_objective, score
-from gpsynth.optimizers import CMAES, Progress
+from gpsynth.optimizers import CMAES, Progress, minimize
 from gpsynth.plotting import plot_front
 from gpsynth.problem import Problem
 from gpsynth.program import Program
@@ -112,9 +112,9 @@ def synthesize(
     objective: Objective | Function | None = None,
     rough: Problem | None = None,
     trials: Sequence[Problem] = (),
+    islands: Islands | None = None,
     folder: str | os.PathLike[str] | None = None,
     resume: bool = False,
-    islands: Islands | None = None,
     threads: int = 2,
     progress: bool = False,
     callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
@@ -136,29 +136,23 @@ def synthesize(
     """
     check_encoding(problem, encoding)
     wanted = as_objective(objective)
-    cost = BatchCost(rough or problem, 1 if islands else threads, wanted)
     strategy = search or StructureSearch(encoding)
-    if guesses:
-        strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
-    arguments: Any = {
-        "seed": seed,
-        "budget": budget,
-        "path": (SEARCH,),
-        "progress": progress,
-        "callback": callback,
-    }
-    if islands is None:
-        checkpoint = (
-            None
-            if folder is None
-            else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, seed))
-        )
-        found, reason = run_search(cost, strategy, checkpoint, resume=resume, **arguments)
-    elif folder is not None or resume:
-        raise ProblemError("islands leave no checkpoints; give either islands or a folder")
-    else:
-        merged = search_islands(cost, strategy, islands, workers=threads, **arguments)
-        found, reason = merged.progress, merged.reason
+    strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
+    cost = BatchCost(rough or problem, threads if islands is None else 1, wanted)
+    found, reason = run_search(
+        cost,
+        strategy,
+        None
+        if folder is None
+        else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, islands, seed)),
+        run=minimize if islands is None else partial(search_islands, islands=islands, workers=threads),
+        resume=resume,
+        seed=seed,
+        budget=budget,
+        path=(SEARCH,),
+        progress=progress,
+        callback=callback,
+    )
     tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
 
@@ -175,10 +169,21 @@ def synthesize(
 
 
 def _identity(
-    problem: Problem, rough: Problem | None, search: StructureSearch[Any], objective: Objective, seed: int
+    problem: Problem,
+    rough: Problem | None,
+    search: StructureSearch[Any],
+    objective: Objective,
+    islands: Islands | None,
+    seed: int,
 ) -> dict[str, str]:
     """What two runs must have in common for one to go on where the other stopped."""
-    parts = {"problem": problem, "rough problem": rough, "search": search, "objective": objective}
+    parts = {
+        "problem": problem,
+        "rough problem": rough,
+        "search": search,
+        "objective": objective,
+        "number of islands": islands,
+    }
     hashes = {name: fingerprint(part) for name, part in parts.items()}
     return {**hashes, "seed": str(seed), "release": version("gpsynth")}
 
@@ -208,7 +213,7 @@ class BatchCost:
         def of_group(group: list[Candidate[Any]]) -> Floats:
             values = np.array([candidate.values for candidate in group]).reshape(len(group), -1)
             bound = max(candidate.bound for candidate in group)
-            return score(self.evaluator, group[0].program, values, self.objective, bound=bound)
+            return score(self.evaluator, group[0].program, values, self.objective, bound)
 
         with ThreadPoolExecutor(self.threads) as pool:
             return np.concatenate(list(pool.map(of_group, groups)))
