@@ -9,11 +9,12 @@ if TYPE_CHECKING:
     from gpsynth.builder import Builder, bind, compose, simplify
     from gpsynth.draws import Draws, crossed, random_draws
     from gpsynth.encodings.cartesian import CartesianEncoding
-    from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
     from gpsynth.encodings.rules import Rules
     from gpsynth.encodings.template import TemplateEncoding
     from gpsynth.encodings.tree import TreeEncoding
+    from gpsynth.encodings.variational import VariationalEncoding
+    from gpsynth.epochs import Epochs
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
     from gpsynth.objective import Objective
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from gpsynth.tracing import trace, where, wrap_angle
     from gpsynth.tradeoffs import Tradeoffs, synthesize_tradeoffs
     from gpsynth.units import UnitReport, check_units
+    from gpsynth.variational_ga import VariationalGA
     from gpsynth.verify.robustness import Robustness, assess
     from gpsynth.verify.stress import Stress
 
@@ -45,11 +47,12 @@ _HOME = {
     "crossed": "draws",
     "random_draws": "draws",
     "CartesianEncoding": "encodings.cartesian",
-    "NetworkOperatorEncoding": "encodings.network_operator",
     "ParameterSpace": "encodings.parameters",
     "Rules": "encodings.rules",
     "TemplateEncoding": "encodings.template",
     "TreeEncoding": "encodings.tree",
+    "VariationalEncoding": "encodings.variational",
+    "Epochs": "epochs",
     "Evaluator": "evaluate",
     "Rollouts": "evaluate",
     "Law": "law",
@@ -77,6 +80,7 @@ _HOME = {
     "trace": "tracing",
     "where": "tracing",
     "wrap_angle": "tracing",
+    "VariationalGA": "variational_ga",
     "Robustness": "verify.robustness",
     "assess": "verify.robustness",
     "Stress": "verify.stress",
@@ -94,10 +98,10 @@ __all__ = [
     "CartesianEncoding",
     "DifferentialEvolution",
     "Draws",
+    "Epochs",
     "Evaluator",
     "GpsynthError",
     "Law",
-    "NetworkOperatorEncoding",
     "Objective",
     "Obstacles",
     "ParameterSpace",
@@ -118,6 +122,8 @@ __all__ = [
     "Trajectory",
     "TreeEncoding",
     "UnitReport",
+    "VariationalEncoding",
+    "VariationalGA",
     "__version__",
     "assess",
     "bind",

@@ -282,15 +282,15 @@ def export_law(law: "Law", folder: Path, *, name: str = "law", formats: Sequence
 def named_encoding(name: EncodingName, problem: "Problem") -> "Encoding[Any]":
     """An encoding for the problem's features and controls, with operations of general use."""
     from gpsynth.encodings.cartesian import CartesianEncoding
-    from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
     from gpsynth.encodings.tree import TreeEncoding
+    from gpsynth.encodings.variational import VariationalEncoding
 
     inputs, outputs = problem.features.names, problem.plant.control_names
     operations = ("add", "sub", "mul", "div_protected", "sin", "cos", "tanh", "sqrt_protected", "min", "max")
     space = ParameterSpace(count=8)
     if name == "network-operator":
-        return NetworkOperatorEncoding(inputs, outputs, space=space)
+        return VariationalEncoding(inputs, outputs, space=space)
     if name == "cartesian":
         return CartesianEncoding(inputs, outputs, operations, space)
     return TreeEncoding(inputs, outputs, operations, space)
@@ -312,7 +312,7 @@ def recorder(folder: "Run", problem: "Problem") -> Callable[["Progress[SearchSta
             "synthesis", generation=progress.generation, evaluations=progress.evaluations, best_cost=cost
         )
         if evaluations == progress.evaluations:
-            best = progress.state.population[0]
+            best = progress.state.front[-1]
             Law(problem.plant, problem.features, best.program, best.values).save(folder.folder / "law.json")
 
     return record

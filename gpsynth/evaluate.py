@@ -203,7 +203,6 @@ class Evaluator:
         names = problem.plant.state_names
         extent = Extent(
             states=len(names),
-            stages=self.clock.b.size,
             plant=given.parameters.shape[1],
             noise=noisy,
             acting=len(given.rest) if late else 0,
@@ -233,7 +232,7 @@ class Evaluator:
         problem, tableau = self.problem, TABLEAUS[self.problem.method]
         substeps = round(problem.period / problem.step)
         flags = (problem.hold, problem.stop)
-        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0, np.inf)
+        return Clock(tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0, np.inf)
 
     def until(self, horizon: float, *, reach: float = 0.0, bound: float = np.inf) -> Clock:
         """The time grid up to the horizon (s); raises ProblemError unless that, and the reach, are sensible numbers."""

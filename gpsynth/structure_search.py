@@ -175,7 +175,7 @@ class StructureSearch(Generic[G]):
         ordered = sorted(individuals, key=lambda individual: (individual.cost, individual.complexity))
         distinct = _distinct(ordered)
         survivors = _survivors(distinct, self.population, round(self.youth * self.population))
-        return SearchState(survivors, _front((*front, *distinct)), generation=generation)
+        return SearchState(survivors, pareto((*front, *distinct)), generation=generation)
 
     def _new(self, state: SearchState[G], rng: np.random.Generator) -> list[tuple[G, Program, int]]:
         """Offspring whose programs are not in the population."""
@@ -316,7 +316,7 @@ def _distinct(ordered: Sequence[Individual[G]]) -> list[Individual[G]]:
     return kept
 
 
-def _front(individuals: Sequence[Individual[G]]) -> tuple[Individual[G], ...]:
+def pareto(individuals: Sequence[Individual[G]]) -> tuple[Individual[G], ...]:
     """Those that no simpler or equally simple one undercuts, by rising complexity."""
     front: list[Individual[G]] = []
     for individual in sorted(individuals, key=lambda each: (each.complexity, each.cost)):

@@ -16,7 +16,8 @@ from gpsynth.arrays import Floats
 from gpsynth.checkpoint import fingerprint
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
-from gpsynth.errors import ProblemError
+from gpsynth.epochs import Epochs
+from gpsynth.errors import OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.guesses import Guess, genomes_of
 from gpsynth.islands import Islands, search_islands
@@ -28,8 +29,9 @@ from gpsynth.problem import Problem
 from gpsynth.program import Program
 from gpsynth.refitting import improved, mean_cost
 from gpsynth.runs import INTERRUPTED, checkpoint_in, run_search
-from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch
+from gpsynth.structure_search import Candidate, Individual, StructureSearch
 from gpsynth.tables import write_csv
+from gpsynth.variational_ga import VariationalGA
 
 if TYPE_CHECKING:
     from gpsynth.plotting import Axes
@@ -107,7 +109,7 @@ def synthesize(
     seed: int = 0,
     budget: int = 20_000,
     tuning: int = 2_000,
-    search: StructureSearch[G] | None = None,
+    search: StructureSearch[G] | Epochs[G] | VariationalGA | None = None,
     guesses: Sequence[Guess] = (),
     objective: Objective | Function | None = None,
     rough: Problem | None = None,
@@ -117,7 +119,7 @@ def synthesize(
     resume: bool = False,
     threads: int = 2,
     progress: bool = False,
-    callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
+    callback: Callable[[Progress[Any]], bool | None] | None = None,
 ) -> SynthesisResult:
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
@@ -129,14 +131,19 @@ def synthesize(
     The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. An `objective`, a
     function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With a `folder`
     the search leaves checkpoints there, and with `resume` it goes on from the last one; Ctrl-C ends it early, with what
-    was found so far. The same seed gives the same result for any number of threads and after any resume.
+    was found so far. The same seed gives the same result for any number of threads and after any resume. `search` is
+    of this encoding; `islands` merge, so they take a StructureSearch only.
 
     Raises ProblemError if the encoding's inputs and outputs are not the problem's features and controls, EncodingError
     or FormulaError if a guess is no formula of the encoding, FileError if the folder's checkpoint is of another run.
     """
     check_encoding(problem, encoding)
     wanted = as_objective(objective)
-    strategy = search or StructureSearch(encoding)
+    strategy: Any = search or StructureSearch(encoding)
+    if islands is not None and not isinstance(strategy, StructureSearch):
+        raise OptimizerError(
+            f"islands merge, which a {type(strategy).__name__} cannot; use a StructureSearch, or no islands"
+        )
     strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
     cost = BatchCost(rough or problem, threads if islands is None else 1, wanted)
     found, reason = run_search(
@@ -171,7 +178,7 @@ def synthesize(
 def _identity(
     problem: Problem,
     rough: Problem | None,
-    search: StructureSearch[Any],
+    search: Any,
     objective: Objective,
     islands: Islands | None,
     seed: int,

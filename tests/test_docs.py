@@ -78,6 +78,12 @@ def test_robustness_runs_as_printed(capsys):
     assert blocks("robustness.md", "text") == [capsys.readouterr().out]
 
 
+def test_a_published_matrix_is_varied_as_printed():
+    place: dict[str, object] = {}
+    for block in blocks("encodings.md", "python"):
+        exec(compile(block, "encodings.md", "exec"), place)
+
+
 @pytest.mark.slow
 def test_the_guide_runs_as_printed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

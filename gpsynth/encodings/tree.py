@@ -43,8 +43,8 @@ class TreeEncoding:
     """One tree per output; subtrees that occur twice are computed once.
 
     A child that is higher than `max_height`, larger than `max_size` nodes or has more numbers than `space.count` is
-    replaced by its parent; `rules` always hold. Where `units` are given the units of every formula fit, numbers having
-    any unit.
+    replaced by its parent; `rules` always hold. Where `symmetries` are given (+ or - for each input and output, one sign
+    a symmetry) every formula keeps them; where `units` are, the units of every formula fit, numbers having any unit.
     """
 
     inputs: tuple[str, ...]
@@ -57,6 +57,7 @@ class TreeEncoding:
     max_size: int = 60  # nodes per tree
     transfer: float = 0.5  # how often a crossover chooses the two outputs independently
     rules: Rules = Rules()
+    symmetries: Mapping[str, str] | None = field(default=None, hash=False)  # of inputs and outputs
     units: Mapping[str, str] | None = field(default=None, hash=False)  # of inputs and outputs, to be kept
 
     def __post_init__(self) -> None:
@@ -86,12 +87,18 @@ class TreeEncoding:
         """A subtree replaced, a node replaced, inserted or taken out, or one number moved."""
         if self.space.moves(genome.values, rng):
             return replace(genome, values=self.space.moved(genome.values, rng))
-        trees = self.to_deap(genome)
-        index = int(rng.integers(len(trees)))
-        with _lent(rng):
-            number = self._number if self._extends else None
-            trees[index] = changed(trees[index], self.primitives, self.grown_heights, number)
-        return self._child(trees, index, genome, rng)
+        for _ in range(
+            _TRIES if self._constraints.restrict else 1
+        ):  # what breaks a constraint is often undone whole
+            trees = self.to_deap(genome)
+            index = int(rng.integers(len(trees)))
+            with _lent(rng):
+                number = self._number if self._extends else None
+                trees[index] = changed(trees[index], self.primitives, self.grown_heights, number)
+            child = self._child(trees, index, genome, rng)
+            if child != genome:
+                break
+        return child
 
     def crossover(
         self, a: TreeGenome, b: TreeGenome, rng: np.random.Generator
@@ -160,7 +167,7 @@ class TreeEncoding:
             if len(self.rules.kept(_operations(deap_tree))) < len(deap_tree):
                 raise EncodingError(f"tree {number} breaks a rule: {self.rules}")
         if not self._lawful(genome):
-            raise EncodingError(f"the units of the trees do not fit: {dict(self.units or {})}")
+            raise EncodingError("the trees do not keep the symmetries or units of inputs and outputs")
 
     @cached_property
     def primitives(self) -> gp.PrimitiveSet:
@@ -209,7 +216,8 @@ class TreeEncoding:
         return missing == 0
 
     def _fits(self, tree: gp.PrimitiveTree) -> bool:
-        return self.rules.size(_operations(tree)) <= self.max_size and tree.height <= self.max_height
+        small = self.rules.size(_operations(tree)) <= self.max_size
+        return len(tree) > 0 and small and tree.height <= self.max_height
 
     def _obeying(self, tree: gp.PrimitiveTree, output: int) -> gp.PrimitiveTree:
         if not self._constraints.restrict:
@@ -219,7 +227,7 @@ class TreeEncoding:
         return gp.PrimitiveTree(self._constraints.obeying(nodes, output, factor))
 
     def _lawful(self, genome: TreeGenome) -> bool:
-        """Whether the trees keep to rules and units."""
+        """Whether the trees keep to rules, symmetries and units."""
         if not self._constraints.restrict:
             return True
         trees = enumerate(self.to_deap(genome))
@@ -233,14 +241,19 @@ class TreeEncoding:
     @cached_property
     def _constraints(self) -> Constraints:
         return constraints_of(
-            self.rules, self.units, (self.inputs, self.outputs), self.operations, self.space
+            self.rules, self.symmetries, self.units, (self.inputs, self.outputs), self.operations, self.space
         )
 
     def _smallest(self) -> TreeGenome:
-        """One leaf for each output."""
-        leaves = [self._constraints.smallest(output) for output in range(len(self.outputs))]
-        trees = tuple((len(self.inputs) if leaf is None else leaf,) for leaf in leaves)
-        return TreeGenome(trees, (self.space.nearest(1.0),) * leaves.count(None))
+        """One leaf for each output, with a factor where its unit needs one."""
+        trees = []
+        for output in range(len(self.outputs)):
+            leaf = self._constraints.smallest(output)
+            node = self._number(1.0) if leaf is None else self._nodes[leaf]
+            meanings = map(self._meaning, self._obeying(gp.PrimitiveTree([node]), output))
+            trees.append(tuple(self._code(1.0 if meaning is None else meaning) for meaning in meanings))
+        numbers = sum(tree.count(len(self.inputs)) for tree in trees)
+        return TreeGenome(tuple(trees), (self.space.nearest(1.0),) * numbers)
 
     def _code(self, item: str | int | float) -> int:
         """The code of an operation, an input's index or a number."""
@@ -261,7 +274,8 @@ class TreeEncoding:
             tree = self._obeying(tree, output)
             if self._fits(tree):
                 return tree
-        return gp.PrimitiveTree(gp.genFull(self.primitives, 0, 0))
+        leaf = self._constraints.smallest(output)
+        return gp.PrimitiveTree([self._number(1.0) if leaf is None else self._nodes[leaf]])
 
     def _child(
         self, trees: list[gp.PrimitiveTree], index: int, parent: TreeGenome, rng: np.random.Generator

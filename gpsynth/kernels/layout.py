@@ -17,7 +17,8 @@ class Rows(NamedTuple):
     target: int  # n
     goal: int  # n
     time: int  # 1
-    slope: int  # s (n + 1), derivatives and running cost of each stage
+    sum: int  # n, the state at the end of a step as far as it is known
+    slope: int  # 2 n, the first and the last derivatives of a step
     alive: int  # 1, 1.0 while the lane runs
     arrival: int  # 1, s
     end: int  # 1, s
@@ -70,7 +71,6 @@ class Conditions(NamedTuple):
 class Clock(NamedTuple):
     """The time grid and the Runge-Kutta tableau."""
 
-    a: Floats  # (s, s)
     b: Floats  # (s,)
     c: Floats  # (s,)
     step: float  # s
@@ -98,9 +98,7 @@ ROWS = types.NamedUniTuple(_INTEGER, len(Rows._fields), Rows)
 CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, INTEGERS, INTEGERS), Code)
 LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
 CONDITIONS = types.NamedTuple((MATRIX, INTEGERS, _INTEGER, VECTOR, TENSOR, INTEGERS), Conditions)
-CLOCK = types.NamedTuple(
-    (MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER, _NUMBER), Clock
-)
+CLOCK = types.NamedTuple((VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER, _NUMBER), Clock)
 WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
 
 Group = TypeVar("Group", bound=tuple[Any, ...])
