@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from gpsynth.errors import FileError
-from gpsynth.files import read_json, write_text
+from gpsynth.files import make_folder, read_json, write_text
 
 FORMAT = "gpsynth-checkpoint/1"
 MOST_BYTES = 500_000_000
@@ -33,7 +33,11 @@ class Checkpoint:
     settings: Mapping[str, str]
 
     def write(self, state: Any) -> None:
-        """Put the state in place of the one before, whole or not at all; raises FileError if that is not possible."""
+        """Put the state in place of the one before, whole or not at all; raises FileError if that is not possible.
+
+        The folder is made if need be.
+        """
+        make_folder(self.path.parent)
         content = {"format": FORMAT, "settings": dict(self.settings), "state": plain(state)}
         write_text(self.path, json.dumps({**content, "hash": _digest(content)}, allow_nan=False))
 

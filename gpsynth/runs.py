@@ -3,11 +3,11 @@
 import os
 import time
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from gpsynth.checkpoint import Checkpoint
 from gpsynth.errors import FileError
-from gpsynth.files import make_folder
 from gpsynth.optimizers import Progress, Search, minimize
 
 FILE = "checkpoint.json"
@@ -77,5 +77,5 @@ def run_search(
 
 
 def checkpoint_in(folder: str | os.PathLike[str], settings: Mapping[str, str]) -> Checkpoint:
-    """The checkpoint of a run folder, which is made if need be; raises FileError if that fails."""
-    return Checkpoint(make_folder(folder) / FILE, settings)
+    """The checkpoint of a run folder."""
+    return Checkpoint(Path(folder) / FILE, settings)

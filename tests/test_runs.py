@@ -85,7 +85,7 @@ def test_ctrl_c_gives_what_was_found_so_far(tmp_path, whole):
 
 
 def test_ctrl_c_before_anything_was_found_ends_the_run(monkeypatch):
-    def interrupt(*arguments):
+    def interrupt(*arguments, **settings):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("gpsynth.synthesis.score", interrupt)
@@ -104,5 +104,6 @@ def test_another_run_is_not_resumed(tmp_path):
         synthesize(other, encoding(other), folder=tmp_path, resume=True, **SETTINGS)
     with pytest.raises(FileError, match=r"checkpoint\.json does not exist"):
         resumed(tmp_path / "elsewhere")
+    assert not (tmp_path / "elsewhere").exists()
     with pytest.raises(FileError, match="there is no folder to resume from"):
         resumed(None)
