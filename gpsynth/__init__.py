@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gpsynth.encodings.variational import VariationalEncoding
     from gpsynth.epochs import Epochs
     from gpsynth.evaluate import Evaluator, Rollouts
+    from gpsynth.islands import Islands
     from gpsynth.law import Law
     from gpsynth.objective import Objective
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
@@ -54,6 +55,7 @@ _HOME = {
     "VariationalEncoding": "encodings.variational",
     "Epochs": "epochs",
     "Evaluator": "evaluate",
+    "Islands": "islands",
     "Rollouts": "evaluate",
     "Law": "law",
     "Objective": "objective",
@@ -101,6 +103,7 @@ __all__ = [
     "Epochs",
     "Evaluator",
     "GpsynthError",
+    "Islands",
     "Law",
     "Objective",
     "Obstacles",
