@@ -69,21 +69,19 @@ def problem(step: float) -> gs.Problem:
     )
 
 
+def encoding() -> gs.TemplateEncoding:
+    """Laws for both wheels made of one for going forward and one for turning, which have symmetries."""
+    names = problem(0.01).features.names, ("forward", "turn")
+    trees = gs.TreeEncoding(
+        *(*names, OPERATIONS, gs.ParameterSpace(10, -20.0, 20.0)), max_size=30, symmetries=SYMMETRIES
+    )
+    return gs.TemplateEncoding(trees, lambda e, forward, turn: (forward + turn, forward - turn), ("u1", "u2"))
+
+
 def synthesized(seed: int, budget: int) -> SynthesisResult:
     """Searched with the published step, scored with the finer one too."""
-    coarse = problem(0.01)
-    names = ("forward", "turn")
-    trees = gs.TreeEncoding(
-        *(coarse.features.names, names, OPERATIONS, gs.ParameterSpace(10, -20.0, 20.0)),
-        max_size=30,
-        symmetries=SYMMETRIES,
-    )
-    wheels = gs.TemplateEncoding(
-        trees, lambda e, forward, turn: (forward + turn, forward - turn), ("u1", "u2")
-    )
-    return gs.synthesize(
-        coarse, wheels, seed=seed, budget=budget, tuning=1_000, trials=[problem(0.001)], islands=ISLANDS
-    )
+    settings = {"seed": seed, "budget": budget, "tuning": 1_000, "islands": ISLANDS}
+    return gs.synthesize(problem(0.01), encoding(), trials=[problem(0.001)], **settings)
 
 
 def functionals(program: gs.Program, parameters: Floats, step: float) -> tuple[float, float, int]:
