@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from gpsynth.simulation import Trajectory, simulate
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
-    from gpsynth.tracing import trace, where, wrap_angle
+    from gpsynth.tracing import inline, trace, where, wrap_angle
 
 __version__ = "0.1.0"
 
@@ -43,6 +43,7 @@ _HOME = {
     "NSGA2": "optimizers",
     "PSO": "optimizers",
     "DifferentialEvolution": "optimizers",
+    "inline": "tracing",
     "minimize": "optimizers",
     "Plan": "planning",
     "PlanSettings": "planning",
@@ -90,6 +91,7 @@ __all__ = [
     "__version__",
     "bind",
     "compose",
+    "inline",
     "minimize",
     "plan",
     "simplify",
