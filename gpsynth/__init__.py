@@ -7,23 +7,34 @@ from gpsynth.errors import GpsynthError
 
 if TYPE_CHECKING:
     from gpsynth.builder import Builder, bind, compose, simplify
+    from gpsynth.draws import Draws, crossed, random_draws
     from gpsynth.encodings.cartesian import CartesianEncoding
-    from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
+    from gpsynth.encodings.rules import Rules
+    from gpsynth.encodings.template import TemplateEncoding
     from gpsynth.encodings.tree import TreeEncoding
+    from gpsynth.encodings.variational import VariationalEncoding
+    from gpsynth.epochs import Epochs
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
+    from gpsynth.objective import Objective
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
     from gpsynth.planning import Plan, PlanSettings, plan
     from gpsynth.plant import Plant
     from gpsynth.problem import Obstacles, Problem
     from gpsynth.program import Program
+    from gpsynth.refitting import refit
     from gpsynth.schedule import Schedule
     from gpsynth.seeds import stream
     from gpsynth.simulation import Trajectory, simulate
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
     from gpsynth.tracing import inline, trace, where, wrap_angle
+    from gpsynth.tradeoffs import Tradeoffs, synthesize_tradeoffs
+    from gpsynth.units import UnitReport, check_units
+    from gpsynth.variational_ga import VariationalGA
+    from gpsynth.verify.robustness import Robustness, assess
+    from gpsynth.verify.stress import Stress
 
 __version__ = "0.1.0"
 
@@ -32,13 +43,20 @@ _HOME = {
     "bind": "builder",
     "compose": "builder",
     "simplify": "builder",
+    "Draws": "draws",
+    "crossed": "draws",
+    "random_draws": "draws",
     "CartesianEncoding": "encodings.cartesian",
-    "NetworkOperatorEncoding": "encodings.network_operator",
     "ParameterSpace": "encodings.parameters",
+    "Rules": "encodings.rules",
+    "TemplateEncoding": "encodings.template",
     "TreeEncoding": "encodings.tree",
+    "VariationalEncoding": "encodings.variational",
+    "Epochs": "epochs",
     "Evaluator": "evaluate",
     "Rollouts": "evaluate",
     "Law": "law",
+    "Objective": "objective",
     "CMAES": "optimizers",
     "NSGA2": "optimizers",
     "PSO": "optimizers",
@@ -52,6 +70,7 @@ _HOME = {
     "Obstacles": "problem",
     "Problem": "problem",
     "Program": "program",
+    "refit": "refitting",
     "Schedule": "schedule",
     "stream": "seeds",
     "Trajectory": "simulation",
@@ -62,6 +81,14 @@ _HOME = {
     "trace": "tracing",
     "where": "tracing",
     "wrap_angle": "tracing",
+    "VariationalGA": "variational_ga",
+    "Robustness": "verify.robustness",
+    "assess": "verify.robustness",
+    "Stress": "verify.stress",
+    "Tradeoffs": "tradeoffs",
+    "synthesize_tradeoffs": "tradeoffs",
+    "UnitReport": "units",
+    "check_units": "units",
 }  # public name -> module; loaded on first use, so that `import gpsynth` does not wait for numba
 
 __all__ = [
@@ -71,10 +98,12 @@ __all__ = [
     "Builder",
     "CartesianEncoding",
     "DifferentialEvolution",
+    "Draws",
+    "Epochs",
     "Evaluator",
     "GpsynthError",
     "Law",
-    "NetworkOperatorEncoding",
+    "Objective",
     "Obstacles",
     "ParameterSpace",
     "Plan",
@@ -82,22 +111,36 @@ __all__ = [
     "Plant",
     "Problem",
     "Program",
+    "Robustness",
     "Rollouts",
+    "Rules",
     "Schedule",
+    "Stress",
     "StructureSearch",
     "SynthesisResult",
+    "TemplateEncoding",
+    "Tradeoffs",
     "Trajectory",
     "TreeEncoding",
+    "UnitReport",
+    "VariationalEncoding",
+    "VariationalGA",
     "__version__",
+    "assess",
     "bind",
+    "check_units",
     "compose",
+    "crossed",
     "inline",
     "minimize",
     "plan",
+    "random_draws",
+    "refit",
     "simplify",
     "simulate",
     "stream",
     "synthesize",
+    "synthesize_tradeoffs",
     "trace",
     "where",
     "wrap_angle",

@@ -76,7 +76,9 @@ def inline(program: Program, values: Sequence[Any]) -> tuple[Symbol, ...]:
     """
     known = next((value for value in values if isinstance(value, Symbol)), None)
     if known is None:
-        raise TracingError(f"inline takes traced values; got {values!r}; call the program with arrays instead")
+        raise TracingError(
+            f"inline takes traced values; got {values!r}; call the program with arrays instead"
+        )
     references = [known.lifted(_scalar(value)).reference for value in values]
     return tuple(Symbol(known.builder, output) for output in known.builder.inline(program, references))
 

@@ -49,9 +49,7 @@ def around(center: tuple[float, ...], width: tuple[float, ...]) -> Callable[[np.
 
 
 BARS = {
-    "landau_oscillator": Bar(
-        landau_oscillator, "best clipped linear law 1.297"
-    ),
+    "landau_oscillator": Bar(landau_oscillator, "best clipped linear law 1.297"),
     "coupled_oscillators": Bar(coupled_oscillators, "published 0.003633"),
     "cart_pole": Bar(cart_pole, "published linear law 16.2648 by Simpson's rule, 16.2220 exactly"),
     "swing_up": Bar(swing_up, "none published", unseen=around((0, 0, 0, 0), (0.5, 0.5, np.pi, 1.0))),
