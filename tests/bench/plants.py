@@ -26,7 +26,7 @@ from examples import (
 )
 from examples.command import Finding
 from gpsynth.arrays import Floats
-from gpsynth.synthesis import costs_of
+from gpsynth.objective import costs_of
 from tests.bench.landau_optimum import optimum
 from tests.bench.three_cars_contact import deepest
 
