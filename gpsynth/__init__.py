@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from gpsynth.simulation import Trajectory, simulate
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
-    from gpsynth.tracing import trace, where, wrap_angle
+    from gpsynth.tracing import inline, trace, where, wrap_angle
     from gpsynth.tradeoffs import Tradeoffs, synthesize_tradeoffs
     from gpsynth.units import UnitReport, check_units
     from gpsynth.variational_ga import VariationalGA
@@ -63,6 +63,7 @@ _HOME = {
     "NSGA2": "optimizers",
     "PSO": "optimizers",
     "DifferentialEvolution": "optimizers",
+    "inline": "tracing",
     "minimize": "optimizers",
     "Plan": "planning",
     "PlanSettings": "planning",
@@ -133,6 +134,7 @@ __all__ = [
     "check_units",
     "compose",
     "crossed",
+    "inline",
     "minimize",
     "plan",
     "random_draws",
