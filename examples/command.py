@@ -11,6 +11,8 @@ from gpsynth.cli import run
 from gpsynth.export import write
 from gpsynth.synthesis import FrontEntry
 
+ENOUGH = 10_000  # evaluations, for islands
+
 
 @dataclass(frozen=True, eq=False)
 class Finding:
@@ -23,6 +25,11 @@ class Finding:
     def best(self) -> FrontEntry:
         """The law that the example is about."""
         return list(self.results.values())[-1].best
+
+
+def islands(budget: int) -> gs.Islands | None:
+    """Four searches side by side that merge, so that little hangs on the seed; a single one where a budget is short."""
+    return gs.Islands(4) if budget >= ENOUGH else None
 
 
 def command(

@@ -4,7 +4,8 @@
 
 The car of Diveev (2016): 4 m by 2 m, |v| <= 5 m/s, |steer| <= 1 rad. Its place is the origin, in a lane that a wall 2 m
 wide fills up to 3 m before it; the car comes along that wall, 2 to 6 m beside the lane, and is to stand within 0.1 m
-and 0.15 rad of it. What comes from the right does the same as what comes from the left, in a mirror.
+and 0.15 rad of it. What comes from the right does the same as what comes from the left, in a mirror; what came from the
+other side of the lane would, too.
 """
 
 from typing import Any
@@ -12,15 +13,17 @@ from typing import Any
 import numpy as np
 
 import gpsynth as gs
-from examples.command import Finding, command, start
+from examples.command import Finding, command, islands, start
 from examples.rectangles import overlap
 
 SPEED, HURRY = 5.0, 15.0  # m/s; 1/s, speed for each meter to go
 RADIUS = 2.0 / np.tan(1.0)  # m, of the tightest turn
 BODY, WALL = (2.0, 1.0), (6.0, 1.0)  # m, half lengths and widths
 NEAR = (0.1, 0.1, 0.15)  # m, m, rad
-BUDGET, TUNING = 10_000, 500  # evaluations
+BUDGET, TUNING = 14_000, 500  # evaluations
 STATES = {"x": "m", "y": "m", "theta": "rad"}
+# Where the two sides of the lane change places:
+SIGNS = {"begin": "+", "aside": "-", "heading": "-", "turn": "-", "steer": "-"}
 STARTS = [(-5, 2, 0), (-10, 4, 0), (-15, 6, 0), (-4, 4, 0), (-4, 6, 0), (-15, 2, 0)]
 
 
@@ -34,11 +37,11 @@ def sight(along: Any, aside: Any, turned: Any) -> dict[str, Any]:
     """The way to go by the errors of a pose (m, m, rad), as if the car came from the left.
 
     Two quarter turns at full lock lead to the place if they begin where `begin` is 0; one turn back at full lock ends
-    in the lane, heading along it, if it begins where `turn` is 0.
+    in the lane, heading along it, if it begins at the heading, a quarter turn at most, to which `turn` is the way.
     """
-    heading = gs.where(along >= 0.0, 1.0, -1.0) * turned
-    begin, turn = np.abs(along) - 2.0 * RADIUS, aside + RADIUS * (1.0 - np.cos(heading))
-    return {"begin": begin, "aside": aside, "heading": heading, "turn": turn}
+    heading, side = gs.where(along >= 0.0, 1.0, -1.0) * turned, gs.where(aside >= 0.0, 1.0, -1.0)
+    dive = 2.0 * side * np.arcsin(np.sqrt(np.minimum(0.5 * np.abs(aside) / RADIUS, 0.5)))
+    return {"begin": np.abs(along) - 2.0 * RADIUS, "aside": aside, "heading": heading, "turn": heading + dive}
 
 
 def contact(*pair: Any) -> Any:
@@ -71,17 +74,18 @@ def parked(step: float) -> gs.Problem:
 
 plant = gs.Plant(car, STATES, {"steer": ("rad", -1.0, 1.0)}, name="parking")
 problem = parked(step=0.01)
-operations = ("add", "sub", "mul", "min", "max", "signed_sqrt")
+operations = ("add", "sub", "mul", "min", "max", "signed_sqrt", "tanh")
+space = gs.ParameterSpace(8)
 encoding = gs.TreeEncoding(
-    problem.features.names, plant.control_names, operations, gs.ParameterSpace(8), max_size=20
+    problem.features.names, plant.control_names, operations, space, max_size=20, symmetries=SIGNS
 )
 
 
 def found(seed: int, budget: int, tuning: int) -> Finding:
     """What this seed finds."""
-    rough, trials = parked(step=0.02), [parked(step=0.002)]
+    steps = {"rough": parked(step=0.02), "trials": [parked(step=0.002)]}
     result = gs.synthesize(
-        problem, encoding, seed=seed, budget=budget, tuning=tuning, rough=rough, trials=trials
+        problem, encoding, seed=seed, budget=budget, tuning=tuning, islands=islands(budget), **steps
     )
     return Finding(problem, {"law": result})
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import gpsynth as gs
-from examples.command import Finding, command, start
+from examples.command import Finding, command, islands, start
 
 CART, POLE, LENGTH, GRAVITY, FORCE = 1.0, 0.3, 0.5, 9.81, 6.0  # kg, kg, m, m/s^2, N
 CATCH = 0.5  # rad
@@ -74,9 +74,10 @@ def to_top(starts: Any, period: float, horizon: float, **choices: Any) -> gs.Pro
 
 
 def trees(problem: gs.Problem, operations: tuple[str, ...], numbers: int, size: int) -> gs.TreeEncoding:
-    """Formulas of what the problem's law sees."""
-    space = gs.ParameterSpace(numbers)
-    return gs.TreeEncoding(problem.features.names, plant.control_names, operations, space, max_size=size)
+    """Formulas of what the problem's law sees; where left and right change places, all but height and energy do."""
+    inputs, outputs, space = problem.features.names, plant.control_names, gs.ParameterSpace(numbers)
+    signs = {name: "+" if name in ("upright", "energy") else "-" for name in (*inputs, *outputs)}
+    return gs.TreeEncoding(inputs, outputs, operations, space, max_size=size, symmetries=signs)
 
 
 plant = gs.Plant(cart_pole, STATES, {"push": ("1", -1.0, 1.0)}, angles=("theta",), name="swing_up")
@@ -90,7 +91,10 @@ def found(seed: int, budget: int, tuning: int) -> Finding:
     top = gs.synthesize(problem, formulas, seed=seed, budget=share, tuning=tuning, rough=balancing(0.05, 5.0))
     problem, rough = swinging(top.law, HANGING, 0.02, 12.0), swinging(top.law, HANGING, 0.04, 10.0)
     formulas = trees(problem, ("add", "sub", "mul", "tanh", "sign"), numbers=8, size=30)
-    up = gs.synthesize(problem, formulas, seed=seed, budget=budget, tuning=tuning, rough=rough)
+    several = islands(budget)
+    up = gs.synthesize(
+        problem, formulas, seed=seed, budget=budget, tuning=tuning, rough=rough, islands=several
+    )
     return Finding(problem, {"balance": top, "law": up})
 
 

@@ -69,6 +69,17 @@ def test_car_from_the_right_is_the_mirror_image(park):
     np.testing.assert_allclose(rates * (-1.0, 1.0, -1.0), others, rtol=1e-12, atol=1e-12)
 
 
+def test_other_side_of_the_lane_changes_the_signs_that_the_search_is_told():
+    rng = np.random.default_rng(4)
+    errors = rng.uniform((-9.0, 0.01, -3.0), (9.0, 6.0, 3.0), (50, 3))
+    seen, mirrored = (
+        np.column_stack(list(parking.sight(*pose.T).values()))
+        for pose in (errors, errors * (1.0, -1.0, -1.0))
+    )
+    signs = [1.0 if parking.SIGNS[name] == "+" else -1.0 for name in parking.problem.features.names]
+    np.testing.assert_allclose(mirrored, seen * signs, rtol=1e-12, atol=1e-12)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "module", [swing_up, parking, three_cars, car_like], ids=lambda module: module.__name__
