@@ -12,15 +12,10 @@ from typing import Any
 import numpy as np
 
 import gpsynth as gs
-from examples.command import Finding, command, start
+from examples.command import Finding, command, islands, start
 
-MASS, INERTIA, ARM, GRAVITY, THRUST = (
-    1.0,
-    0.05,
-    0.2,
-    9.81,
-    9.0,
-)  # kg, kg m^2, m, m/s^2, N of one rotor at most
+MASS, INERTIA, ARM = 1.0, 0.05, 0.2  # kg, kg m^2, m
+GRAVITY, THRUST = 9.81, 9.0  # m/s^2, N of one rotor at most
 STATES = {"x": "m", "vx": "m/s", "y": "m", "vy": "m/s", "theta": "rad", "omega": "rad/s"}
 STARTS = [
     *((4, 0, 0, 0, 0, 0), (-4, 0, -3, 0, 0, 0), (0, 0, 4, 0, 0, 0)),
@@ -70,13 +65,21 @@ plant = gs.Plant(
 )
 problem = flight(STARTS, period=0.02, horizon=10.0)
 operations, space = ("add", "sub", "mul", "tanh"), gs.ParameterSpace(10, -5.0, 5.0)
-encoding = gs.TreeEncoding(problem.features.names, plant.control_names, operations, space, max_size=25)
+sides = dict.fromkeys(("right", "drift", "tilt", "spin", "twist"), "-")  # which left and right tell apart
+encoding = gs.TreeEncoding(
+    *(problem.features.names, plant.control_names, operations, space),
+    max_size=25,
+    symmetries={"above": "+", "climb": "+", "lift": "+", **sides},
+)
 
 
 def found(seed: int, budget: int, tuning: int) -> Finding:
     """What this seed finds."""
     rough = flight(STARTS, period=0.04, horizon=6.0)
-    result = gs.synthesize(problem, encoding, seed=seed, budget=budget, tuning=tuning, rough=rough)
+    several = islands(budget)
+    result = gs.synthesize(
+        problem, encoding, seed=seed, budget=budget, tuning=tuning, rough=rough, islands=several
+    )
     return Finding(problem, {"law": result})
 
 

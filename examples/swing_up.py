@@ -18,7 +18,10 @@ from examples.command import Finding, command, islands, start
 CART, POLE, LENGTH, GRAVITY, FORCE = 1.0, 0.3, 0.5, 9.81, 6.0  # kg, kg, m, m/s^2, N
 CATCH = 0.5  # rad
 NEAR_TOP = [(0, 0, 0.2, 0), (0.4, 0, 0, 0), (-0.3, 0, -0.1, 0.3), (0, 0.3, 0, -0.6)]
-HANGING = [(0, 0, -np.pi, 0), (0.5, 0, 3, 0), (-0.5, 0, -3, 1), (0, 0, 1.5, 0), (0.3, 0.3, -0.5, 0)]
+HANGING = [
+    *((0, 0, -np.pi, 0), (0.5, 0.3, 3, 0), (0.5, -0.5, -2.5, 1), (0.4, 0, 1.5, -0.5)),
+    *((-0.3, 0.4, 0.8, 1), (0.3, 0.3, -0.5, 0), (-0.5, -0.4, 2, 0.8), (0.5, 0.5, 0.3, -0.3)),
+]
 STATES = {"x": "m", "v": "m/s", "theta": "rad", "omega": "rad/s"}
 
 
@@ -36,9 +39,10 @@ def effort(x: Any, u: Any, goal: Any) -> Any:
 
 
 def away(x: Any, u: Any, goal: Any) -> Any:
-    """Cost per second of a swing: height missing and place; beyond 2 m the track ends."""
+    """Cost per second of a swing: height missing, place and push; beyond 2 m the track ends."""
     place = 0.2 * np.minimum(x.x**2, 4.0) + gs.where(np.abs(x.x) > 2.0, 5.0, 0.0)
-    return 1.0 - np.cos(x.theta) + place + 0.1 * np.tanh(x.omega**2) + 0.1 * np.minimum(x.v**2, 1.0)
+    unrest = np.tanh(x.omega**2) + np.minimum(x.v**2, 1.0) + u.push**2
+    return 1.0 - np.cos(x.theta) + place + 0.1 * unrest
 
 
 def balancing(period: float, horizon: float) -> gs.Problem:
@@ -98,7 +102,7 @@ def found(seed: int, budget: int, tuning: int) -> Finding:
     return Finding(problem, {"balance": top, "law": up})
 
 
-main = command(found, budget=12_000, tuning=200, reference="no published cost", seed=0)
+main = command(found, budget=16_000, tuning=200, reference="no published cost", seed=0)
 
 if __name__ == "__main__":
     start(main, "swing_up")
