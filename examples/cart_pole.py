@@ -52,8 +52,11 @@ states = {"x": "m", "v": "m/s", "theta": "rad", "omega": "rad/s"}
 plant = gs.Plant(cart_pole, states, controls={"force": ("N", -50.0, 50.0)}, name="cart_pole")
 problem = transfer(period=0.01, horizon=10.0)
 operations = ("add", "sub", "mul", "sin", "cos")
-space = gs.ParameterSpace(6)
-encoding = gs.TreeEncoding(problem.features.names, plant.control_names, operations, space, max_size=30)
+encoding = gs.TreeEncoding(
+    *(problem.features.names, plant.control_names, operations, gs.ParameterSpace(6)),
+    max_size=30,
+    symmetries=dict.fromkeys((*problem.features.names, "force"), "-"),  # left and right
+)
 
 
 def found(seed: int, budget: int, tuning: int) -> Finding:

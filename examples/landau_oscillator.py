@@ -50,6 +50,7 @@ encoding = gs.TreeEncoding(
     operations=("add", "sub", "mul", "tanh", "abs"),
     space=gs.ParameterSpace(6),
     max_size=20,
+    symmetries={"error_a1": "-", "error_a2": "-", "b": "-"},
 )
 
 
