@@ -84,8 +84,11 @@ plant = gs.Plant(
     name="car_like",
 )
 problem = driven(poses(1, 32), period=0.05, horizon=25.0)
+sides = dict.fromkeys(("bearing", "approach", "turn", "steer"), "-")  # which left and right tell apart
 encoding = gs.TreeEncoding(
-    problem.features.names, plant.control_names, OPERATIONS, gs.ParameterSpace(8), max_size=25
+    *(problem.features.names, plant.control_names, OPERATIONS, gs.ParameterSpace(8)),
+    max_size=25,
+    symmetries={"way": "+", "distance": "+", "v": "+", **sides},
 )
 
 

@@ -102,7 +102,7 @@ def found(seed: int, budget: int, tuning: int) -> Finding:
     return Finding(problem, {"balance": top, "law": up})
 
 
-main = command(found, budget=16_000, tuning=200, reference="no published cost", seed=0)
+main = command(found, budget=16_000, tuning=200, reference="no published cost")
 
 if __name__ == "__main__":
     start(main, "swing_up")
