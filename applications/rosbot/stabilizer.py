@@ -28,8 +28,8 @@ from gpsynth.tracing import where, wrap_angle
 OPERATIONS = ("add", "sub", "mul", "min", "max", "abs", "square", "tanh", "sin", "cos", "atan")
 # all continuous, and no division: laws with sgn, atan2 or roots arrive as early, but chatter on the way
 POSITION, HEADING = 0.05, 0.1  # m, rad: tolerance of arrival
-SEARCH_BUDGET = 80_000  # parameter vectors
-ISLANDS = Islands(8)
+SEARCH_BUDGET = 60_000  # parameter vectors
+ISLANDS, ENOUGH = Islands(8), 40_000  # islands, and the budget from which each has enough
 # The first sign: left and right change places. The second: the robot turns round, so that forward is backward. A law
 # without these symmetries can be good on its training; it reaches the goal by turning the same way all the time.
 SYMMETRIES = MappingProxyType(
@@ -126,7 +126,7 @@ def synthesize_stabilizer(
         tuning=300,
         rough=rough,
         trials=trials,
-        islands=ISLANDS,
+        islands=ISLANDS if budget >= ENOUGH else None,
         threads=threads,
         progress=progress,
         callback=callback,
