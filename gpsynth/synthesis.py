@@ -27,6 +27,7 @@ from gpsynth.optimizers import CMAES, Progress, minimize
 from gpsynth.plotting import plot_front
 from gpsynth.problem import Problem
 from gpsynth.program import Program
+from gpsynth.proportions import lower_bound
 from gpsynth.refitting import improved, mean_cost
 from gpsynth.runs import INTERRUPTED, checkpoint_in, run_search
 from gpsynth.structure_search import Candidate, Individual, StructureSearch
@@ -51,6 +52,10 @@ class FrontEntry:
     complexity: int  # instructions of the formula
     reached: float  # share of the starts that are at the goal at the end
     median_time: float  # s, of the arrivals
+    worst_time: float  # s, of the arrivals
+    reached_at_least: (
+        float | None
+    )  # what the probability is at least, at 95 %, by the worst trial; without trials None
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +84,9 @@ class SynthesisResult:
                 "complexity": entry.complexity,
                 "cost": entry.cost,
                 "reached": entry.reached,
+                "reached_at_least": entry.reached_at_least,
                 "median_time": entry.median_time,
+                "worst_time": entry.worst_time,
                 "formulas": "; ".join(entry.law.formulas()),
             }
             for entry in self.front
@@ -87,18 +94,25 @@ class SynthesisResult:
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write `rows` as a CSV file with a header; raises FileError if that is not possible."""
-        write_csv(path, ("complexity", "cost", "reached", "median_time", "formulas"), self.rows())
+        times = ("median_time", "worst_time")
+        names = ("complexity", "cost", "reached", "reached_at_least", *times, "formulas")
+        write_csv(path, names, self.rows())
 
     def plot(self, *, ax: "Axes | None" = None) -> "Axes":
         """Cost over complexity (`gpsynth.plotting.plot_front`)."""
         return plot_front(self.front, ax=ax)
 
     def table(self) -> str:
-        """The front as text: complexity, cost, share of starts reached, median time, formulas."""
-        lines = [f"{'size':>4} {'cost':>10} {'reached':>8} {'median s':>9}  law"]
+        """The front as text.
+
+        Complexity, cost, share of starts reached and what its probability is at least, times (s), formulas.
+        """
+        lines = [f"{'size':>4} {'cost':>10} {'reached':>8} {'p >=':>6} {'median s':>9} {'worst s':>8}  law"]
         for entry in self.front:
-            head = f"{entry.complexity:4d} {entry.cost:10.4g} {entry.reached:8.1%} {entry.median_time:9.2f}  "
-            lines.append(head + ("\n" + " " * 36).join(entry.law.formulas()))
+            least = "" if entry.reached_at_least is None else f"{entry.reached_at_least:.3f}"
+            head = f"{entry.complexity:4d} {entry.cost:10.4g} {entry.reached:8.1%} {least:>6} "
+            head += f"{entry.median_time:9.2f} {entry.worst_time:8.2f}  "
+            lines.append(head + ("\n" + " " * len(head)).join(entry.law.formulas()))
         return "\n".join(lines)
 
 
@@ -262,13 +276,16 @@ def _entry(
         evaluator.of_program(program, values[np.newaxis], paths=objective.paths) for evaluator in evaluators
     ]
     arrival = np.concatenate([each.arrival[0] for each in rollouts])
-    reached = np.concatenate([_there(*pair) for pair in zip(evaluators, rollouts, strict=True)])
+    there = [_there(*pair) for pair in zip(evaluators, rollouts, strict=True)]
+    reached = np.concatenate(there)
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
         cost=float(np.concatenate([objective(each)[0] for each in rollouts]).mean()),
         complexity=program.complexity,
         reached=float(reached.mean()),
         median_time=float(np.median(arrival[reached])) if reached.any() else float("inf"),
+        worst_time=float(arrival[reached].max()) if reached.any() else float("inf"),
+        reached_at_least=min((lower_bound(int(each.sum()), len(each)) for each in there[1:]), default=None),
     )
 
 
