@@ -1,0 +1,119 @@
+"""Numbers of finished structures: Levenberg-Marquardt on all rows, then plain numbers where they fit as well."""
+
+import math
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+
+from gpsynth.arrays import Floats
+from gpsynth.kernels import fitting
+from gpsynth.kernels.data_code import CONSTANT, FILL
+from gpsynth.kernels.data_machine import WIDTH
+from gpsynth.kernels.layout import readonly
+from gpsynth.regression.algebra import simplify
+from gpsynth.regression.expressions import Expression, Flat, flatten, numbers, size, with_numbers
+
+LONGEST = 200  # nodes
+NEAR = 1e-5  # how far a plain number may be, as a share
+
+
+class Data(NamedTuple):
+    """Rows to fit, padded to the machine's width with rows of weight zero."""
+
+    inputs: Floats  # (n, m)
+    columns: Floats  # (m, N)
+    y: Floats  # (N,)
+    weights: Floats  # (N,) mean 1 over the rows
+    total: float  # weighted squared deviation of y from its mean
+
+
+class Candidate(NamedTuple):
+    """A formula and how good it is."""
+
+    expression: Expression
+    error: float  # weighted squared residual as a share of y's deviation from its mean: 1 - R2
+    size: int
+
+
+def data_of(inputs: Floats, y: Floats, weights: Floats) -> Data:
+    """Rows for the kernels."""
+    padding = -len(inputs) % WIDTH
+    columns = np.pad(inputs, ((0, padding), (0, 0)), mode="edge").T
+    scaled = weights * (len(weights) / weights.sum())
+    total = float(scaled @ (y - (scaled @ y) / len(y)) ** 2)
+    return Data(
+        inputs,
+        readonly(np.ascontiguousarray(columns)),
+        readonly(np.pad(y, (0, padding), mode="edge")),
+        readonly(np.pad(scaled, (0, padding))),
+        total,
+    )
+
+
+def fit_numbers(expressions: Sequence[Expression], data: Data, iterations: int) -> list[tuple[Expression, float]]:
+    """Each expression with its numbers improved, and its error; no iterations only measures."""
+    if not expressions:
+        return []
+    flat = flatten(expressions)
+    values = flat.population.numbers.copy()
+    errors = np.empty(len(expressions))
+    fitting.fit(
+        readonly(_code(flat)),
+        values,
+        readonly(flat.firsts),
+        readonly(flat.population.roots + np.int32(1)),
+        readonly(flat.places),
+        readonly(flat.ends),
+        data.columns,
+        data.y,
+        data.weights,
+        iterations,
+        errors,
+    )
+    fitted, begin = [], 0
+    for expression, end, error in zip(expressions, flat.ends, errors, strict=True):
+        found = iter(values[flat.places[begin:end]].tolist())
+        fitted.append((with_numbers(expression, found), float(error) / data.total))
+        begin = end
+    return fitted
+
+
+def polish(expressions: Sequence[Expression], data: Data, iterations: int = 12) -> list[Candidate]:
+    """Fitted, rounded to plain numbers where that costs nothing, simplified; what is not finite is left out."""
+    short = [e for e in map(simplify, expressions) if size(e) <= LONGEST]
+    fitted = [(e, error) for e, error in fit_numbers(short, data, iterations) if error < math.inf]
+    plain = fit_numbers([simplify(_plain(e)) for e, _ in fitted], data, 0)
+    candidates = []
+    for (expression, error), (rounded, other) in zip(fitted, plain, strict=True):
+        best, value = (rounded, other) if other <= 1.01 * error + 1e-26 else (expression, error)
+        best = simplify(best)
+        candidates.append(Candidate(best, value, size(best)))
+    return candidates
+
+
+def _code(flat: Flat) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:
+    whole = flat.population
+    positions = np.arange(len(whole.ops), dtype=np.int32)
+    ops = np.where(whole.ops == CONSTANT, FILL, whole.ops)
+    return np.ascontiguousarray(np.stack((ops, positions, whole.a, whole.b), axis=1), dtype=np.int32)
+
+
+def _plain(expression: Expression) -> Expression:
+    return with_numbers(expression, iter([nearest_plain(value) for value in numbers(expression)]))
+
+
+def nearest_plain(value: float, near: float = NEAR) -> float:
+    """An integer, a fraction with a small denominator or such a multiple of pi, if one is near; else the value."""
+    if not math.isfinite(value) or abs(value) < 1e-10:
+        return 0.0 if abs(value) < 1e-10 else value
+    for unit in (1.0, math.pi):
+        ratio = value / unit
+        if abs(ratio) > 1e6:
+            continue
+        fraction = float(Fraction(ratio).limit_denominator(12))
+        if fraction != 0.0 and abs(ratio - fraction) <= near * abs(ratio):
+            return fraction * unit
+    decimal = float(f"{value:.3g}")
+    return decimal if abs(value - decimal) <= 0.01 * near * abs(value) else value
