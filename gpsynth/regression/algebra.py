@@ -47,6 +47,12 @@ def _simpler(e: Expression) -> Expression:  # noqa: C901, PLR0911, PLR0912 one r
         return number(elementary.evaluate(e[0], *(operand[1] for operand in e[1:])))
     if e[0] == "neg":
         return _negated(e[1])
+    if e[0] == "exp":
+        return _exponential(e[1])
+    if e[0] == "square" and e[1][0] == "sqrt":
+        return e[1][1]  # type: ignore[no-any-return]
+    if e[0] == "sqrt" and e[1][0] == "exp":
+        return ("exp", ("mul", number(0.5), e[1][1]))
     if len(e) == 2:
         return e
     kind, a, b = e
@@ -108,6 +114,8 @@ def _simpler(e: Expression) -> Expression:  # noqa: C901, PLR0911, PLR0912 one r
             return ("mul", number(a[1] / b[2][1]), b[1])
         if _is_number(a) and b[0] == "sub" and a[1] == -1.0:
             return ("sub", b[2], b[1])
+        if _is_number(a) and a[1] < 0.0 and b[0] == "log" and b[1][0] == "div":
+            return ("mul", number(-a[1]), ("log", ("div", b[1][2], b[1][1])))
         if b[0] == "div" and b[1] == ONE:
             return ("div", a, b[2])
         if a[0] == "div" and a[1] == ONE:
@@ -136,6 +144,34 @@ def _simpler(e: Expression) -> Expression:  # noqa: C901, PLR0911, PLR0912 one r
         if a == b:
             return ONE
     return e
+
+
+def _exponential(e: Expression) -> Expression:
+    """exp e, with logarithms in a sum taken out as factors."""
+    if e[0] == "log":
+        return e[1]  # type: ignore[no-any-return]
+    if e[0] in {"add", "sub"}:
+        a, b = e[1:]
+        outside = {"add": "mul", "sub": "div"}[e[0]]
+        if a[0] == "log" or b[0] == "log":
+            return (outside, _exponential(a), _exponential(b))
+        if _is_number(b) and _has_logarithm(a):
+            return ("mul", _exponential(a), number(elementary.evaluate("exp", b[1] if e[0] == "add" else -b[1])))
+        if _has_logarithm(a) or _has_logarithm(b):
+            return (outside, _exponential(a), _exponential(b))
+    if e[0] == "mul" and _is_number(e[1]) and e[2][0] == "log":
+        for power, name in ((0.5, "sqrt"), (2.0, "square")):
+            if abs(e[1][1]) == power:
+                root: Expression = (name, e[2][1])
+                return root if e[1][1] > 0.0 else ("div", ONE, root)
+        if e[1][1] == -1.0:
+            return ("div", ONE, e[2][1])
+    return ("exp", e)
+
+
+def _has_logarithm(e: Expression) -> bool:
+    """Whether a sum has a logarithm as a term."""
+    return e[0] == "log" or (e[0] in {"add", "sub"} and any(map(_has_logarithm, e[1:])))
 
 
 def _negated(e: Expression) -> Expression:

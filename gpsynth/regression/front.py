@@ -2,12 +2,20 @@
 
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
-from gpsynth.regression.expressions import numbers
-from gpsynth.regression.polish import Candidate
+from gpsynth.regression.expressions import Expression, numbers
 
 EXACT = 1e-20  # errors below are rounding
 NATS_A_NODE = 2.5  # ln 12: a node is one of about a dozen symbols
+
+
+class Candidate(NamedTuple):
+    """A formula and how good it is."""
+
+    expression: Expression
+    error: float  # weighted squared residual as a share of y's deviation from its mean: 1 - R2
+    size: int
 
 
 class Front:
@@ -20,8 +28,14 @@ class Front:
         """Keep what is better than everything of its size."""
         for candidate in candidates:
             known = self._best.get(candidate.size)
-            if known is None or candidate.error < known.error:
+            if candidate.error < (math.inf if known is None else known.error):
                 self._best[candidate.size] = candidate
+
+    def admits(self, size: int, error: float) -> bool:
+        """Whether nothing of this size or smaller is as good; errors below EXACT count as equal."""
+        return not any(
+            known <= size and candidate.error <= max(error, EXACT) for known, candidate in self._best.items()
+        ) and error < math.inf
 
     def members(self) -> list[Candidate]:
         """From the smallest to the most accurate; errors below EXACT count as equal."""

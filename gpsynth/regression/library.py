@@ -68,6 +68,20 @@ def enumerate_formulas(rows: Floats, functions: frozenset[str], limit: int) -> L
     return growing.library()
 
 
+def wrapped(library: Library, functions: frozenset[str], limit: int) -> Library:
+    """The functions of one operand of the first `limit` formulas of a library, behind that library."""
+    growing = _Growing.of(library)
+    below = np.flatnonzero(library.costs[:limit] > 0)
+    for name in _UNARY:
+        if name in functions:
+            growing.extend(name, below, below, 0, 10 * limit)
+    growing.close(0)
+    whole = growing.library()
+    costs = np.where(whole.costs == 0, whole.costs[whole.a] + STEP, whole.costs)
+    costs[: len(library.ops)] = library.costs
+    return whole._replace(costs=costs.astype(np.int32))
+
+
 def _candidates(
     growing: "_Growing", functions: frozenset[str], cost: int
 ) -> Iterator[tuple[str, Indices, Indices]]:
@@ -118,6 +132,17 @@ class _Growing:
         self._pending: list[Indices] = []
         self._all = np.concatenate(self._values)
         self.count = m + 2
+
+    @classmethod
+    def of(cls, library: Library) -> "_Growing":
+        """To go on from a finished library."""
+        variables = int(np.sum(library.ops <= VARIABLE))
+        growing = cls(np.ascontiguousarray(library.values[:variables].T))
+        growing._ops, growing._a, growing._b = [library.ops], [library.a], [library.b]
+        growing._costs, growing._values, growing._all = [library.costs], [library.values], library.values
+        growing._keys = _keys(library.values, growing._projections)
+        growing.count = len(library.ops)
+        return growing
 
     def of_cost(self, cost: int) -> Indices:
         """The formulas of this cost."""

@@ -28,11 +28,11 @@ def sum_of(expressions: Sequence[Expression], terms: Floats, target: Target) -> 
     if abs(constant) < 1e-9 * size:
         constant = 0.0
     kept = [
-        (nearest_plain(float(c), 1e-9), e)
+        (_settled(float(c)), e)
         for c, e, values in zip(factors, expressions, terms, strict=True)
         if abs(c) * float(np.abs(values).max()) > 1e-10 * size
     ]
-    return simplify(target.inverse(total(kept, nearest_plain(constant, 1e-9))))
+    return simplify(target.inverse(total(kept, _settled(constant))))
 
 
 def quotient_of(
@@ -41,8 +41,8 @@ def quotient_of(
     """The formula with target (c0 + sum c_i above_i) / (1 + sum d_k below_k); terms are above, then target * below."""
     factors, constant = coefficients(terms, target.values)
     split = len(above)
-    numerator = total([(nearest_plain(float(c), 1e-9), e) for c, e in zip(factors[:split], above, strict=True)], constant)
-    denominator = total([(nearest_plain(-float(c), 1e-9), e) for c, e in zip(factors[split:], below, strict=True)], 1.0)
+    numerator = total([(_settled(float(c)), e) for c, e in zip(factors[:split], above, strict=True)], constant)
+    denominator = total([(_settled(-float(c)), e) for c, e in zip(factors[split:], below, strict=True)], 1.0)
     return simplify(target.inverse(("div", numerator, denominator)))
 
 
@@ -71,6 +71,10 @@ def power_product(bases: Sequence[Expression], exponents: Sequence[float]) -> Ex
         rooted_part: Expression = ("sqrt", root)
         above = rooted_part if above is None else ("mul", above, rooted_part)
     return simplify(_quotient(above, below) or number(1.0))
+
+
+def _settled(value: float) -> float:
+    return nearest_plain(value, 1e-9) if abs(value) > 1e-9 else value
 
 
 def _quotient(above: Expression | None, below: Expression | None) -> Expression | None:

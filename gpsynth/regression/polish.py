@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -13,10 +12,13 @@ from gpsynth.kernels.data_code import CONSTANT, FILL
 from gpsynth.kernels.data_machine import WIDTH
 from gpsynth.kernels.layout import readonly
 from gpsynth.regression.algebra import simplify
+from gpsynth.regression.front import Candidate, Front
 from gpsynth.regression.expressions import Expression, Flat, flatten, numbers, size, with_numbers
 
-LONGEST = 200  # nodes
-NEAR = 1e-5  # how far a plain number may be, as a share
+LONGEST = 120  # nodes
+HOPE = 0.1
+_DENOMINATORS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
+NEAR = (1e-2, 1e-4, 1e-6, 1e-9)  # how far a plain number may be, as a share
 
 
 class Data(NamedTuple):
@@ -27,14 +29,6 @@ class Data(NamedTuple):
     y: Floats  # (N,)
     weights: Floats  # (N,) mean 1 over the rows
     total: float  # weighted squared deviation of y from its mean
-
-
-class Candidate(NamedTuple):
-    """A formula and how good it is."""
-
-    expression: Expression
-    error: float  # weighted squared residual as a share of y's deviation from its mean: 1 - R2
-    size: int
 
 
 def data_of(inputs: Floats, y: Floats, weights: Floats) -> Data:
@@ -80,14 +74,21 @@ def fit_numbers(expressions: Sequence[Expression], data: Data, iterations: int) 
     return fitted
 
 
-def polish(expressions: Sequence[Expression], data: Data, iterations: int = 12) -> list[Candidate]:
-    """Fitted, rounded to plain numbers where that costs nothing, simplified; what is not finite is left out."""
-    short = [e for e in map(simplify, expressions) if size(e) <= LONGEST]
-    fitted = [(e, error) for e, error in fit_numbers(short, data, iterations) if error < math.inf]
-    plain = fit_numbers([simplify(_plain(e)) for e, _ in fitted], data, 0)
+def polish(expressions: Sequence[Expression], data: Data, front: Front, iterations: int = 12) -> list[Candidate]:
+    """What is worth a place in the front: fitted, rounded to plain numbers where that costs nothing, simplified.
+
+    A formula is fitted only if it would come in with a tenth of its error.
+    """
+    short = [e for e in dict.fromkeys(map(simplify, expressions)) if size(e) <= LONGEST]
+    measured = fit_numbers(short, data, 0)
+    hopeful = [e for e, error in measured if front.admits(size(e), HOPE * error)]
+    fitted = [(e, error) for e, error in fit_numbers(hopeful, data, iterations) if front.admits(size(e), error)]
+    rounded = [simplify(_plain(e, near)) for e, _ in fitted for near in NEAR]
+    plain = fit_numbers(rounded, data, 0)
     candidates = []
-    for (expression, error), (rounded, other) in zip(fitted, plain, strict=True):
-        best, value = (rounded, other) if other <= 1.01 * error + 1e-26 else (expression, error)
+    for k, (expression, error) in enumerate(fitted):
+        trials = plain[k * len(NEAR) : (k + 1) * len(NEAR)]
+        best, value = next((t for t in trials if t[1] <= 1.01 * error + 1e-26), (expression, error))
         best = simplify(best)
         candidates.append(Candidate(best, value, size(best)))
     return candidates
@@ -100,20 +101,21 @@ def _code(flat: Flat) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:
     return np.ascontiguousarray(np.stack((ops, positions, whole.a, whole.b), axis=1), dtype=np.int32)
 
 
-def _plain(expression: Expression) -> Expression:
-    return with_numbers(expression, iter([nearest_plain(value) for value in numbers(expression)]))
+def _plain(expression: Expression, near: float) -> Expression:
+    return with_numbers(expression, iter([nearest_plain(value, near) for value in numbers(expression)]))
 
 
-def nearest_plain(value: float, near: float = NEAR) -> float:
+def nearest_plain(value: float, near: float) -> float:
     """An integer, a fraction with a small denominator or such a multiple of pi, if one is near; else the value."""
-    if not math.isfinite(value) or abs(value) < 1e-10:
-        return 0.0 if abs(value) < 1e-10 else value
+    if abs(value) <= 0.1 * near:
+        return 0.0
+    if not math.isfinite(value):
+        return value
     for unit in (1.0, math.pi):
         ratio = value / unit
-        if abs(ratio) > 1e6:
-            continue
-        fraction = float(Fraction(ratio).limit_denominator(12))
-        if fraction != 0.0 and abs(ratio - fraction) <= near * abs(ratio):
-            return fraction * unit
+        for denominator in _DENOMINATORS if abs(ratio) < 1e6 else ():
+            nearest = round(ratio * denominator)
+            if nearest and abs(ratio * denominator - nearest) <= near * abs(ratio):
+                return nearest / denominator * unit
     decimal = float(f"{value:.3g}")
     return decimal if abs(value - decimal) <= 0.01 * near * abs(value) else value

@@ -12,7 +12,9 @@ import numpy.typing as npt
 from gpsynth.arrays import Floats
 
 DEPENDENT = 1e-9  # a column with less than this share of its length outside the span adds nothing but rounding
+TILE = 256  # rows and columns of a block that is worked on several times, so that it stays in the cache
 Indices = npt.NDArray[np.int64]
+Floats32 = npt.NDArray[np.float32]
 
 
 class Columns(NamedTuple):
@@ -111,27 +113,104 @@ def _grow(columns: Columns, residual: Floats, basis: Floats, column: int) -> tup
     return residual - direction * (direction @ residual), np.concatenate((basis, direction[None]))
 
 
-def products(values: Floats, residual: Floats, count: int) -> list[tuple[int, int]]:
-    """The pairs of rows of `values` (N, r) whose product explains most of a centered residual (r,)."""
-    r = values.shape[1]
-    scaled = (values / np.abs(values).max(axis=1, keepdims=True)).astype(np.float32)
-    square = scaled * scaled
-    weighted = scaled * residual.astype(np.float32)
-    best: list[tuple[float, int, int]] = []
-    step = max(1, 2_000_000 // len(values))
-    for begin in range(0, len(values), step):
-        part = slice(begin, begin + step)
-        overlap = weighted[part] @ scaled.T
-        length = square[part] @ square.T
-        mean = scaled[part] @ scaled.T
-        free = length - mean * mean / np.float32(r)
-        gain = np.where(free > 1e-4 * length, overlap * overlap / np.maximum(free, np.float32(1e-20)), 0.0)
-        gain = np.triu(gain, begin)
-        few = min(gain.size, count)
-        places = np.argpartition(gain.ravel(), gain.size - few)[-few:]
-        best += [
-            (round(float(gain.ravel()[place]), 5), begin + place // len(values), place % len(values))
-            for place in places.tolist()
-        ]
-    best.sort(key=lambda item: (-item[0], item[1], item[2]))
-    return [(i, j) for _, i, j in best[:count]]
+def pairs(columns: Columns, target: Floats, given: Floats, count: int) -> list[tuple[int, int, float]]:
+    """The pairs of columns that explain most of a target (r,) beside the columns `given` (k, r): exhaustive.
+
+    With unit columns orthogonal to the given ones, c their overlaps with the target and g that of the two, the pair
+    explains (c_i^2 + c_j^2 - 2 c_i c_j g) / (1 - g^2).
+    """
+    left = target - target.mean()
+    unit = columns.unit
+    if len(given):
+        basis = np.linalg.qr((given - given.mean(axis=1, keepdims=True)).T)[0]
+        left = left - basis @ (basis.T @ left)
+        unit = unit - (unit @ basis) @ basis.T
+    length = np.sqrt(np.einsum("ij,ij->i", unit, unit))
+    unit = unit / np.maximum(length, 1e-6)[:, None] * (length > 1e-4)[:, None]
+    size = float(left @ left)
+    if size == 0.0:
+        return []
+    overlap = unit @ (left / np.sqrt(size))
+    best = _Best(2 * count)
+    for row in range(0, len(unit), TILE):
+        for column in range(row, len(unit), TILE):
+            gain = _pair_gains(unit, overlap, slice(row, row + TILE), slice(column, column + TILE))
+            best.add(gain, row, column)
+    kept = sorted({(round(1.0 - gain, 13), min(i, j), max(i, j)) for gain, i, j in best.items() if i != j})
+    return [(i, j, max(rest, 0.0)) for rest, i, j in kept[:count]]
+
+
+def _pair_gains(unit: Floats, overlap: Floats, rows: slice, columns: slice) -> Floats:
+    cross = unit[rows] @ unit[columns].T
+    mine, others = overlap[rows, None], overlap[None, columns]
+    gain = np.multiply(mine, cross)
+    gain *= -2.0
+    gain += others
+    gain *= others
+    gain += mine * mine
+    cross *= cross
+    np.subtract(1.0, cross, out=cross)
+    gain[cross < 1e-8] = 0.0
+    gain /= np.maximum(cross, 1e-8, out=cross)
+    return gain  # type: ignore[no-any-return]
+
+
+class Products(NamedTuple):
+    """All products of a row of `left` and a row of `right`, not written out."""
+
+    left: Floats32  # (K, r)
+    right: Floats32  # (N, r)
+    weights: Floats32  # (K, N) one over the squared length of the centered product; 0 if that is nearly constant
+
+
+def products_of(few: Floats, many: Floats) -> Products:
+    """The products of rows (K, r) and (N, r), in single precision: what they yield is looked at again."""
+    left, right = ((v / np.abs(v).max(axis=1, keepdims=True)).astype(np.float32) for v in (few, many))
+    length = (left * left) @ (right * right).T
+    free = left @ right.T
+    free *= free
+    free *= np.float32(-1.0 / few.shape[1])
+    free += length
+    weights = np.where(free > 1e-4 * length, 1.0 / np.maximum(free, np.float32(1e-20)), np.float32(0.0))
+    return Products(left, right, weights.astype(np.float32))
+
+
+def best_products(products: Products, residual: Floats, count: int) -> list[tuple[int, int]]:
+    """The pairs of rows whose product explains most of a centered residual (r,)."""
+    weighted = products.left * residual.astype(np.float32)
+    best = _Best(count)
+    step = max(1, TILE * TILE // len(weighted))
+    for begin in range(0, len(products.right), step):
+        gain = weighted @ products.right[begin : begin + step].T
+        gain *= gain
+        gain *= products.weights[:, begin : begin + step]
+        best.add(gain, 0, begin)
+    found = sorted(best.items(), key=lambda item: (-round(item[0], 5), item[1], item[2]))
+    return [(i, j) for _, i, j in found[:count]]
+
+
+class _Best:
+    """The largest `count` entries of a matrix that comes in blocks of rows."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.least = 0.0
+        self._gains = np.empty(0)
+        self._places = np.empty((2, 0), dtype=np.int64)
+
+    def add(self, block: npt.NDArray[np.floating], row: int, column: int) -> None:
+        """A block whose corner is (row, column)."""
+        places = np.flatnonzero(block > self.least)
+        if len(places) == 0:
+            return
+        i, j = np.divmod(places, block.shape[1])
+        self._gains = np.concatenate((self._gains, block.ravel()[places]))
+        self._places = np.concatenate((self._places, np.stack((i + row, j + column))), axis=1)
+        if len(self._gains) > self.count:
+            kept = np.argpartition(self._gains, -self.count)[-self.count :]
+            self._gains, self._places = self._gains[kept], self._places[:, kept]
+            self.least = float(self._gains.min())
+
+    def items(self) -> list[tuple[float, int, int]]:
+        """(entry, row, column), in no order."""
+        return list(zip(self._gains.tolist(), *self._places.tolist(), strict=True))
