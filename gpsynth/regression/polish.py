@@ -12,6 +12,7 @@ from gpsynth.kernels.data_code import CONSTANT, FILL
 from gpsynth.kernels.data_machine import WIDTH
 from gpsynth.kernels.layout import readonly
 from gpsynth.regression.algebra import simplify
+from gpsynth.regression.factoring import compact
 from gpsynth.regression.front import Candidate, Front
 from gpsynth.regression.expressions import Expression, Flat, flatten, numbers, size, with_numbers
 
@@ -89,9 +90,20 @@ def polish(expressions: Sequence[Expression], data: Data, front: Front, iteratio
     for k, (expression, error) in enumerate(fitted):
         trials = plain[k * len(NEAR) : (k + 1) * len(NEAR)]
         best, value = next((t for t in trials if t[1] <= 1.01 * error + 1e-26), (expression, error))
-        best = simplify(best)
         candidates.append(Candidate(best, value, size(best)))
-    return candidates
+    return [*candidates, *_compacted(candidates, data)]
+
+
+def _compacted(candidates: Sequence[Candidate], data: Data) -> list[Candidate]:
+    """Smaller forms of the candidates that are as good."""
+    smaller = [(c, compact(c.expression)) for c in candidates]
+    smaller = [(c, e) for c, e in smaller if size(e) < c.size]
+    measured = fit_numbers([e for _, e in smaller], data, 0)
+    return [
+        Candidate(e, error, size(e))
+        for (candidate, _), (e, error) in zip(smaller, measured, strict=True)
+        if error <= 1.01 * candidate.error + 1e-26
+    ]
 
 
 def _code(flat: Flat) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:

@@ -1,8 +1,11 @@
 """The search, one small step after the other: cheap and simple structures first, deeper ones after them."""
 
+import time
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from gpsynth.regression.dense import polynomials
+from gpsynth.regression.evolution import evolve
 from gpsynth.regression.library import enumerate_formulas, wrapped
 from gpsynth.regression.loosening import loosen_front
 from gpsynth.regression.powers import powers
@@ -12,6 +15,38 @@ from gpsynth.regression.sums import exhaustive, greedy, multiples, multiplied
 from gpsynth.regression.targets import derived, plain
 
 ARITHMETIC = frozenset(("add", "sub", "mul", "div"))
+
+
+SETTLING = 12  # least number of steps after a formula is exact, in which a smaller one may turn up
+BEGINNING = 20  # structured steps before evolution begins
+_OVER = object()
+GENERATIONS = 4  # of evolution for each structured step
+
+
+class Budget(NamedTuple):
+    """When a search ends, if it has not found an exact formula: the first limit that is reached counts."""
+
+    evaluations: int
+    seconds: float | None = None  # of processor time; the same seed need not give the same result then
+
+
+def search(state: State, budget: Budget) -> State:
+    """Structured steps and generations of evolution in turn, until the budget is spent or the formula is exact."""
+    begin = time.process_time()
+    structured, evolving = steps(state), evolve(state)
+    count, settled = 0, 0
+    while state.evaluations < budget.evaluations:
+        if budget.seconds is not None and time.process_time() - begin >= budget.seconds:
+            break
+        count += 1
+        if next(structured, _OVER) is _OVER or (count > BEGINNING and not state.done):
+            for _ in range(GENERATIONS):
+                next(evolving)
+        if state.done:
+            settled += 1
+            if settled > max(SETTLING, count // 3):
+                break
+    return state
 
 
 def steps(state: State) -> Iterator[None]:
@@ -33,14 +68,16 @@ def steps(state: State) -> Iterator[None]:
         greedy(state, plainest, target)
         greedy(state, small, target)
         yield
+    exhaustive(state, small, y)
+    yield
+    for some in (tiny, small, plainer):
+        powers(state, some, y)
+        yield
     for target in first:
         multiplied(state, plain_products, target)
         multiplied(state, tiny_products, target)
         yield
         greedy(state, plainer, target)
-        yield
-    for some in (tiny, small, plainer):
-        powers(state, some, y)
         yield
     exhaustive(state, large, y)
     yield

@@ -1,0 +1,266 @@
+"""Genetic programming on trees: what enumeration does not reach is grown, and its numbers are fitted as it grows.
+
+Errors are those of the best slope and constant (Keijzer 2003); the best of each generation get a few steps of
+Levenberg-Marquardt and keep the numbers (Lamarck). Of children with the same error only the shortest lives.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from gpsynth.arrays import Floats, Ints
+from gpsynth.kernels import fitting, genomes
+from gpsynth.kernels.data_code import BINARY, CONSTANT, FILL, OPCODE
+from gpsynth.kernels.layout import readonly
+from gpsynth.regression.expressions import Expression, expression_of
+from gpsynth.regression.population import Population, columns_of, evaluate, share
+from gpsynth.regression.library import LARGEST
+from gpsynth.regression.selection import columns_of as columns_from
+from gpsynth.regression.selection import select
+from gpsynth.regression.state import TERMS, WIDTH, State
+from gpsynth.regression.targets import Target, derived, plain
+
+SIZE = 600
+CHILDREN = 600
+LONGEST = 40  # nodes
+FITTED = 30  # children whose numbers are fitted in each generation
+STEPS = 4
+TOURNAMENT = 4
+PARSIMONY = 0.01  # a node must lower the error by this share
+PATIENCE = 30  # generations without progress before a new beginning
+REPORT = 5  # generations between two looks at the best
+HARVEST = 15  # generations between two selections among subtrees
+HARVESTED = 60  # trees whose subtrees are columns
+
+
+class Trees(NamedTuple):
+    """Trees in postfix order, one row each."""
+
+    ops: Ints  # (p, LONGEST)
+    numbers: Floats  # (p, LONGEST)
+    lengths: Ints  # (p,)
+
+    def take(self, which: Ints) -> "Trees":
+        """The trees with these indices."""
+        return Trees(self.ops[which], self.numbers[which], self.lengths[which])
+
+
+class Grammar(NamedTuple):
+    """What trees are made of."""
+
+    unary: Ints
+    binary: Ints
+    variables: int
+
+
+class Scored(NamedTuple):
+    """Trees, errors as a share of y's deviation, slopes and constants."""
+
+    trees: Trees
+    error: Floats
+    slope: Floats
+    constant: Floats
+
+
+def evolve(state: State) -> Iterator[None]:
+    """Generation after generation, without end; the best go into the state's front."""
+    problem = _Problem(state)
+    y = plain(state.y)
+    targets = [y, *derived(y, np.empty((len(state.y), 0)), state.functions)]
+    while True:
+        population = problem.scored(problem.random(SIZE))
+        best, waited = np.inf, 0
+        generation = 0
+        while waited < PATIENCE and not state.done:
+            population = problem.next_generation(population)
+            generation += 1
+            least = float(population.error.min())
+            waited = 0 if least < 0.99 * best else waited + 1
+            best = min(best, least)
+            if generation % REPORT == 0:
+                problem.report(population)
+            if generation % HARVEST == 0:
+                problem.harvest(population, targets)
+            yield
+        problem.report(population)
+        yield
+
+
+class _Problem:
+    """The data and the grammar of one search."""
+
+    def __init__(self, state: State) -> None:
+        self.state, self.rng = state, state.rng
+        names = sorted(state.functions | ({"square"} if "mul" in state.functions else set()))
+        self.grammar = Grammar(
+            *(
+                readonly(np.array([OPCODE[n] for n in names if (n in BINARY) == two], dtype=np.int32))
+                for two in (False, True)
+            ),
+            state.data.inputs.shape[1],
+        )
+        rows = state.rows
+        self.inputs = state.data.inputs[rows]
+        self.columns = readonly(columns_of(self.inputs))
+        self.y = readonly(state.y[rows].copy())
+        self.weights = readonly(state.data.weights[rows].copy())
+        padding = self.columns.shape[1] - len(rows)
+        self.padded_y = readonly(np.pad(self.y, (0, padding)))
+        self.padded_weights = readonly(np.pad(self.weights, (0, padding)))
+        mean = self.weights @ self.y / self.weights.sum()
+        self.total = float(self.weights @ (self.y - mean) ** 2) or 1.0
+
+    def random(self, count: int) -> Trees:
+        """Random trees of 1 to 15 nodes."""
+        half = self.rng.integers(0, 8, count)
+        lengths = (2 * half + 1 if len(self.grammar.unary) == 0 else half * 2 + self.rng.integers(1, 3, count) - (half == 7))
+        lengths = np.clip(lengths, 1, LONGEST).astype(np.int32)
+        if len(self.grammar.binary) == 0:
+            lengths = np.minimum(lengths, 8).astype(np.int32)
+        ops, numbers = np.zeros((count, LONGEST), dtype=np.int32), np.zeros((count, LONGEST))
+        uniforms = self.rng.random((count, genomes.DRAWS * LONGEST))
+        genomes.grow(*self.grammar, readonly(lengths), readonly(uniforms), ops, numbers)
+        return Trees(ops, numbers, lengths)
+
+    def scored(self, trees: Trees) -> Scored:
+        """Errors of all trees; equal subtrees are evaluated once."""
+        self.state.evaluations += len(trees.lengths)
+        shared = share(_flat(trees))
+        values = evaluate(shared, self.columns)
+        results = np.empty((shared.count, 3))
+        genomes.scaled_errors(readonly(values[:, : len(self.y)].copy()), self.y, self.weights, results)
+        error, slope, constant = results[shared.outputs].T
+        return Scored(trees, error / self.total, slope, constant)
+
+    def next_generation(self, parents: Scored) -> Scored:
+        """Children, the best of them fitted, and whoever is better lives."""
+        count = len(parents.error)
+        keys = parents.error * (1.0 + PARSIMONY * parents.trees.lengths)
+        entrants = self.rng.integers(0, count, (2, CHILDREN, TOURNAMENT))
+        mates = np.take_along_axis(entrants, keys[entrants].argmin(axis=2)[..., None], axis=2)[..., 0].T
+        fresh = self.random(CHILDREN // 10)
+        donors = Trees(*(np.concatenate(pair) for pair in zip(parents.trees, fresh, strict=True)))
+        mates[: 2 * len(fresh.lengths) : 2, 1] = count + np.arange(len(fresh.lengths))
+        children = Trees(np.zeros((CHILDREN, LONGEST), np.int32), np.zeros((CHILDREN, LONGEST)), np.zeros(CHILDREN, np.int32))
+        choices = self.rng.random((CHILDREN, genomes.CHOICES))
+        genomes.vary(
+            *self.grammar,
+            *(parents.trees.ops, parents.trees.numbers, readonly(parents.trees.lengths)),
+            *(donors.ops, donors.numbers, readonly(donors.lengths)),
+            readonly(np.ascontiguousarray(mates, dtype=np.int32)),
+            readonly(choices),
+            *children,
+        )
+        offspring = self.fitted(self.scored(children))
+        return self.survivors(
+            Scored(
+                Trees(*(np.concatenate(pair) for pair in zip(parents.trees, offspring.trees, strict=True))),
+                *(np.concatenate(pair) for pair in zip(parents[1:], offspring[1:], strict=True)),
+            )
+        )
+
+    def fitted(self, scored: Scored) -> Scored:
+        """The best children with better numbers."""
+        has_numbers = np.any(
+            (scored.trees.ops == CONSTANT) & (np.arange(LONGEST) < scored.trees.lengths[:, None]), axis=1
+        )
+        order = np.argsort(np.where(has_numbers, scored.error, np.inf), kind="stable")
+        _, first = np.unique(scored.error[order], return_index=True)
+        chosen = order[np.sort(first)][:FITTED]
+        chosen = chosen[has_numbers[chosen] & np.isfinite(scored.error[chosen])].astype(np.int32)
+        if len(chosen) == 0:
+            return scored
+        trees = scored.trees.take(chosen)
+        some = _scaled_flat(trees, scored.slope[chosen], scored.constant[chosen])
+        constants = np.flatnonzero(some.ops == CONSTANT).astype(np.int32)
+        firsts = np.concatenate(([0], some.roots[:-1] + 1)).astype(np.int32)
+        ends = np.searchsorted(constants, some.roots, side="right").astype(np.int32)
+        code = np.stack(
+            (np.where(some.ops == CONSTANT, FILL, some.ops), np.arange(len(some.ops)), some.a, some.b), axis=1
+        ).astype(np.int32)
+        values, errors = some.numbers.copy(), np.empty(len(chosen))
+        fitting.fit(
+            *(readonly(code), values, readonly(firsts), readonly(some.roots + np.int32(1)), readonly(constants)),
+            *(readonly(ends), self.columns, self.padded_y, self.padded_weights, STEPS, errors),
+        )
+        self.state.evaluations += 3 * STEPS * len(chosen)
+        for k, tree in enumerate(chosen.tolist()):
+            length = int(trees.lengths[k])
+            scored.trees.numbers[tree, :length] = values[firsts[k] : firsts[k] + length]
+            scored.error[tree] = errors[k] / self.total
+            scored.constant[tree], scored.slope[tree] = values[firsts[k] + length], values[firsts[k] + length + 1]
+        return scored
+
+    def survivors(self, scored: Scored) -> Scored:
+        """The best SIZE of different error; where errors agree, the shortest."""
+        error = np.where(np.isnan(scored.error), np.inf, scored.error)
+        fraction, exponent = np.frexp(error)
+        rounded = np.ldexp(np.round(fraction * 2.0**20), exponent)
+        order = np.lexsort((scored.trees.lengths, rounded))
+        first = np.concatenate(([True], rounded[order][1:] != rounded[order][:-1]))
+        unique = order[first]
+        keys = error[unique] * (1.0 + PARSIMONY * scored.trees.lengths[unique])
+        kept = unique[np.argsort(keys, kind="stable")[:SIZE]]
+        return Scored(scored.trees.take(kept), error[kept], scored.slope[kept], scored.constant[kept])
+
+    def report(self, population: Scored, count: int = 6) -> None:
+        """The best trees, as formulas of y, into the front."""
+        keys = population.error
+        best = np.argsort(keys, kind="stable")[:count]
+        short = np.argsort(np.where(population.trees.lengths <= 12, keys, np.inf), kind="stable")[:2]
+        chosen = np.unique(np.concatenate((best, short))).astype(np.int32)
+        chosen = chosen[np.isfinite(population.error[chosen])]
+        if len(chosen) == 0:
+            return
+        flat = _scaled_flat(population.trees.take(chosen), population.slope[chosen], population.constant[chosen])
+        found: list[Expression] = [expression_of(flat, int(root)) for root in flat.roots]
+        self.state.consider(found, "evolution", iterations=20)
+
+
+    def harvest(self, population: Scored, targets: list[Target]) -> None:
+        """Sums of subtrees of the best trees, by forward selection: what evolved in different trees comes together."""
+        best = np.argsort(population.error, kind="stable")[:HARVESTED].astype(np.int32)
+        flat = _flat(population.trees.take(best))
+        shared = share(flat._replace(roots=np.arange(len(flat.ops), dtype=np.int32)))
+        values = evaluate(shared, self.columns)[:, : len(self.y)]
+        _, position = np.unique(shared.outputs, return_index=True)
+        with np.errstate(all="ignore"):
+            usable = np.flatnonzero(np.abs(values).max(axis=1) < LARGEST)
+        columns = columns_from(values[usable])
+        self.state.evaluations += len(usable) * len(targets)
+
+        def expression(column: int) -> Expression:
+            return expression_of(flat, int(position[usable[columns.index[column]]]))
+
+        for target in targets:
+            subsets = select(columns, target.values[self.state.rows], terms=TERMS, width=WIDTH)
+            self.state.consider_sums(subsets, expression, target, "sums of evolved subtrees")
+
+
+def _flat(trees: Trees) -> Population:
+    size = int(trees.lengths.sum())
+    ops, a, b = np.empty((3, size), dtype=np.int32)
+    numbers, roots = np.empty(size), np.empty(len(trees.lengths), dtype=np.int32)
+    stack = np.empty(LONGEST + 4, dtype=np.int32)
+    genomes.flatten(trees.ops, trees.numbers, readonly(trees.lengths), ops, a, b, numbers, roots, stack)
+    return Population(ops, a, b, numbers, roots)
+
+
+def _scaled_flat(trees: Trees, slope: Floats, constant: Floats) -> Population:
+    """slope * tree + constant for each tree; the two numbers come right behind it, constant first."""
+    count = len(trees.lengths)
+    ops = np.pad(trees.ops, ((0, 0), (0, 4)))
+    numbers = np.pad(trees.numbers, ((0, 0), (0, 4)))
+    rows = np.arange(count)
+    tail = (CONSTANT, CONSTANT, OPCODE["mul"], OPCODE["add"])
+    for k, op in enumerate(tail):
+        ops[rows, trees.lengths + k] = op
+    numbers[rows, trees.lengths], numbers[rows, trees.lengths + 1] = constant, slope
+    scaled = Trees(ops, numbers, trees.lengths + np.int32(4))
+    flat = _flat(scaled)
+    # postfix order: tree, constant, slope, mul, add; so mul takes slope and tree, add takes the constant
+    multiplied, added = flat.roots - 1, flat.roots
+    flat.a[multiplied], flat.b[multiplied] = flat.roots - 2, flat.roots - 4
+    flat.a[added], flat.b[added] = multiplied, flat.roots - 3
+    return flat
