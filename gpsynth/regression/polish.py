@@ -17,7 +17,7 @@ from gpsynth.regression.front import Candidate, Front
 from gpsynth.regression.expressions import Expression, Flat, flatten, numbers, size, with_numbers
 
 LONGEST = 120  # nodes
-HOPE = 0.1
+HOPE = 0.1  # a fit may bring the error down to this share
 _DENOMINATORS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
 NEAR = (1e-2, 1e-4, 1e-6, 1e-9)  # how far a plain number may be, as a share
 
@@ -75,14 +75,16 @@ def fit_numbers(expressions: Sequence[Expression], data: Data, iterations: int) 
     return fitted
 
 
-def polish(expressions: Sequence[Expression], data: Data, front: Front, iterations: int = 12) -> list[Candidate]:
+def polish(
+    expressions: Sequence[Expression], data: Data, front: Front, *, iterations: int = 12, hope: float = HOPE
+) -> list[Candidate]:
     """What is worth a place in the front: fitted, rounded to plain numbers where that costs nothing, simplified.
 
-    A formula is fitted only if it would come in with a tenth of its error.
+    A formula is fitted only if it would come in with its error times `hope`.
     """
     short = [e for e in dict.fromkeys(map(simplify, expressions)) if size(e) <= LONGEST]
     measured = fit_numbers(short, data, 0)
-    hopeful = [e for e, error in measured if front.admits(size(e), HOPE * error)]
+    hopeful = [e for e, error in measured if front.admits(size(e), hope * error)]
     fitted = [(e, error) for e, error in fit_numbers(hopeful, data, iterations) if front.admits(size(e), error)]
     rounded = [simplify(_plain(e, near)) for e, _ in fitted for near in NEAR]
     plain = fit_numbers(rounded, data, 0)

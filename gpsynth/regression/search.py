@@ -7,7 +7,7 @@ from typing import NamedTuple
 from gpsynth.regression.dense import polynomials
 from gpsynth.regression.evolution import evolve
 from gpsynth.regression.library import enumerate_formulas, wrapped
-from gpsynth.regression.loosening import loosen_front
+from gpsynth.regression.loosening import loosen_front, templates
 from gpsynth.regression.powers import powers
 from gpsynth.regression.quotients import quotients
 from gpsynth.regression.state import State, shelf
@@ -19,6 +19,7 @@ ARITHMETIC = frozenset(("add", "sub", "mul", "div"))
 
 SETTLING = 12  # least number of steps after a formula is exact, in which a smaller one may turn up
 BEGINNING = 20  # structured steps before evolution begins
+LOOSENING = 15  # steps between two attempts with more numbers
 _OVER = object()
 GENERATIONS = 4  # of evolution for each structured step
 
@@ -42,6 +43,8 @@ def search(state: State, budget: Budget) -> State:
         if next(structured, _OVER) is _OVER or (count > BEGINNING and not state.done):
             for _ in range(GENERATIONS):
                 next(evolving)
+        if count % LOOSENING == 0:
+            loosen_front(state)
         if state.done:
             settled += 1
             if settled > max(SETTLING, count // 3):
@@ -79,6 +82,9 @@ def steps(state: State) -> Iterator[None]:
         yield
         greedy(state, plainer, target)
         yield
+    for target in first[:5]:
+        templates(state, full, target)
+        yield
     exhaustive(state, large, y)
     yield
     large_products = multiples(tiny, large)
@@ -91,8 +97,6 @@ def steps(state: State) -> Iterator[None]:
         for some in (plainest, plainer, tiny, small):
             quotients(state, some, target)
             yield
-    loosen_front(state)
-    yield
     for some in (plain_large, large):
         powers(state, some, y)
         yield
@@ -107,8 +111,6 @@ def steps(state: State) -> Iterator[None]:
     for target in first:
         multiplied(state, deep_products, target)
         yield
-    loosen_front(state)
-    yield
     second = [t for level in first[1:] for t in derived(level, inputs, functions)]
     for target in second:
         greedy(state, tiny, target)

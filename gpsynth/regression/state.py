@@ -10,7 +10,7 @@ from gpsynth.regression import linear
 from gpsynth.regression.expressions import Expression, evaluate
 from gpsynth.regression.front import EXACT, Candidate, Front
 from gpsynth.regression.library import Library
-from gpsynth.regression.polish import Data, polish
+from gpsynth.regression.polish import HOPE, Data, polish
 from gpsynth.regression.selection import Columns, Subset, columns_of
 from gpsynth.regression.targets import Target
 
@@ -46,6 +46,7 @@ class State:
         self.rows = np.sort(rng.permutation(count)[:ROWS])
         self.y: Floats = data.y[:count]
         self.front = Front()
+        self.loosened: set[Expression] = set()
         self.evaluations = 0
         self.found: list[tuple[int, str, float]] = []  # evaluations, what found it, error
 
@@ -54,10 +55,12 @@ class State:
         """Whether what is left is rounding."""
         return self.front.error < EXACT
 
-    def consider(self, expressions: Sequence[Expression], source: str, *, iterations: int = 12) -> list[Candidate]:
+    def consider(
+        self, expressions: Sequence[Expression], source: str, *, iterations: int = 12, hope: float = HOPE
+    ) -> list[Candidate]:
         """Polish formulas of y and put them into the front."""
         before = self.front.error
-        candidates = polish(expressions, self.data, self.front, iterations)
+        candidates = polish(expressions, self.data, self.front, iterations=iterations, hope=hope)
         self.front.add(candidates)
         self.evaluations += len(expressions)
         if self.front.error < before:
