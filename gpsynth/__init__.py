@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from gpsynth.plant import Plant
     from gpsynth.problem import Obstacles, Problem
     from gpsynth.program import Program
+    from gpsynth.regression.entry import regress
+    from gpsynth.regression.estimator import SymbolicRegressor
+    from gpsynth.regression.result import RegressionResult
     from gpsynth.schedule import Schedule
     from gpsynth.seeds import stream
     from gpsynth.simulation import Trajectory, simulate
@@ -51,6 +54,9 @@ _HOME = {
     "Obstacles": "problem",
     "Problem": "problem",
     "Program": "program",
+    "RegressionResult": "regression.result",
+    "SymbolicRegressor": "regression.estimator",
+    "regress": "regression.entry",
     "Schedule": "schedule",
     "stream": "seeds",
     "Trajectory": "simulation",
@@ -81,9 +87,11 @@ __all__ = [
     "Plant",
     "Problem",
     "Program",
+    "RegressionResult",
     "Rollouts",
     "Schedule",
     "StructureSearch",
+    "SymbolicRegressor",
     "SynthesisResult",
     "Trajectory",
     "TreeEncoding",
@@ -92,6 +100,7 @@ __all__ = [
     "compose",
     "minimize",
     "plan",
+    "regress",
     "simplify",
     "simulate",
     "stream",

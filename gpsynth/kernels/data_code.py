@@ -12,8 +12,8 @@ CONSTANT = -1
 VARIABLE = -2  # VARIABLE - j is column j
 
 NAMES = (
-    *("add", "sub", "mul", "div", "neg", "abs", "half", "double", "square", "cube", "sqrt", "sin", "cos", "tan"),
-    *("atan", "asin", "acos", "exp", "log", "tanh", "cbrt", "max", "min"),
+    *("add", "sub", "mul", "div", "neg", "abs", "half", "double", "square", "cube", "sqrt", "sin", "cos"),
+    *("atan", "exp", "log", "tanh", "max", "min"),
 )  # operations of the table that data can be fitted with; all have derivatives
 OPCODE = MappingProxyType({name: CODES[name] for name in NAMES})
 BINARY = frozenset(("add", "sub", "mul", "div", "max", "min"))
@@ -21,8 +21,8 @@ BINARY = frozenset(("add", "sub", "mul", "div", "max", "min"))
 ADD, SUB, MUL, DIV = (CODES[name] for name in ("add", "sub", "mul", "div"))
 NEG, ABS, HALF, DOUBLE = (CODES[name] for name in ("neg", "abs", "half", "double"))
 SQUARE, CUBE, SQRT = (CODES[name] for name in ("square", "cube", "sqrt"))
-SIN, COS, TAN, ATAN, ASIN, ACOS = (CODES[name] for name in ("sin", "cos", "tan", "atan", "asin", "acos"))
-EXP, LOG, TANH, CBRT = (CODES[name] for name in ("exp", "log", "tanh", "cbrt"))
+SIN, COS, ATAN = (CODES[name] for name in ("sin", "cos", "atan"))
+EXP, LOG, TANH = (CODES[name] for name in ("exp", "log", "tanh"))
 MAX, MIN = (CODES[name] for name in ("max", "min"))
 
 # Instructions beyond the table: one operand is a number, a row is filled with it, a row is an output.

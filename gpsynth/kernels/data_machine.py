@@ -13,12 +13,9 @@ from gpsynth.kernels import arithmetic, exponentials, trigonometry
 from gpsynth.kernels.compile import CODE, MATRIX, OUT_MATRIX, VECTOR, kernel, widest_vectors
 from gpsynth.kernels.data_code import (
     ABS,
-    ACOS,
     ADD,
     ADD_NUMBER,
-    ASIN,
     ATAN,
-    CBRT,
     COS,
     CUBE,
     DIV,
@@ -41,7 +38,6 @@ from gpsynth.kernels.data_code import (
     SQUARE,
     SUB,
     SUB_NUMBER,
-    TAN,
     TANH,
 )
 
@@ -121,18 +117,9 @@ def execute(
         elif operation == COS:
             for lane in range(lanes):
                 w[d, lane] = trigonometry.cos(w[a, lane])
-        elif operation == TAN:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.tan(w[a, lane])
         elif operation == ATAN:
             for lane in range(lanes):
                 w[d, lane] = trigonometry.atan(w[a, lane])
-        elif operation == ASIN:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.asin(w[a, lane])
-        elif operation == ACOS:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.acos(w[a, lane])
         elif operation == EXP:
             for lane in range(lanes):
                 w[d, lane] = exponentials.exp(w[a, lane])
@@ -142,9 +129,6 @@ def execute(
         elif operation == TANH:
             for lane in range(lanes):
                 w[d, lane] = exponentials.tanh(w[a, lane])
-        elif operation == CBRT:
-            for lane in range(lanes):
-                w[d, lane] = exponentials.cbrt(w[a, lane])
         elif operation == MAX:
             for lane in range(lanes):
                 w[d, lane] = arithmetic.max_(w[a, lane], w[b, lane])

@@ -9,15 +9,12 @@ from typing import Any
 from numba import types
 
 from gpsynth.kernels import trigonometry
-from gpsynth.kernels.arithmetic import sgn, sqrt
-from gpsynth.kernels.compile import CODE, MATRIX, OUT_MATRIX, VECTOR, kernel, widest_vectors
+from gpsynth.kernels.arithmetic import sgn
+from gpsynth.kernels.compile import CODE, MATRIX, OUT_MATRIX, kernel, widest_vectors
 from gpsynth.kernels.data_code import (
     ABS,
-    ACOS,
     ADD,
-    ASIN,
     ATAN,
-    CBRT,
     COS,
     CUBE,
     DIV,
@@ -33,11 +30,8 @@ from gpsynth.kernels.data_code import (
     SQRT,
     SQUARE,
     SUB,
-    TAN,
     TANH,
-    VARIABLE,
 )
-from gpsynth.kernels.data_machine import execute
 
 
 
@@ -97,18 +91,9 @@ def backward(code: Any, first: int, last: int, v: Any, g: Any, lanes: int) -> No
         elif op == COS:
             for lane in range(lanes):
                 g[a, lane] -= g[t, lane] * trigonometry.sin(v[a, lane])
-        elif op == TAN:
-            for lane in range(lanes):
-                g[a, lane] += g[t, lane] * (1.0 + v[t, lane] * v[t, lane])
         elif op == ATAN:
             for lane in range(lanes):
                 g[a, lane] += g[t, lane] / (1.0 + v[a, lane] * v[a, lane])
-        elif op == ASIN:
-            for lane in range(lanes):
-                g[a, lane] += g[t, lane] / sqrt(1.0 - v[a, lane] * v[a, lane])
-        elif op == ACOS:
-            for lane in range(lanes):
-                g[a, lane] -= g[t, lane] / sqrt(1.0 - v[a, lane] * v[a, lane])
         elif op == EXP:
             for lane in range(lanes):
                 g[a, lane] += g[t, lane] * v[t, lane]
@@ -118,9 +103,6 @@ def backward(code: Any, first: int, last: int, v: Any, g: Any, lanes: int) -> No
         elif op == TANH:
             for lane in range(lanes):
                 g[a, lane] += g[t, lane] * (1.0 - v[t, lane] * v[t, lane])
-        elif op == CBRT:
-            for lane in range(lanes):
-                g[a, lane] += g[t, lane] / (3.0 * v[t, lane] * v[t, lane])
         elif op == MAX:
             for lane in range(lanes):
                 g[a, lane] += g[t, lane] if v[a, lane] >= v[b, lane] else 0.0
@@ -131,16 +113,3 @@ def backward(code: Any, first: int, last: int, v: Any, g: Any, lanes: int) -> No
                 g[a, lane] += g[t, lane] if v[a, lane] < v[b, lane] else 0.0
             for lane in range(lanes):
                 g[b, lane] += 0.0 if v[a, lane] < v[b, lane] else g[t, lane]
-
-
-@kernel(types.void(CODE, VECTOR, types.int64, types.int64, MATRIX, types.int64, types.int64, OUT_MATRIX))
-def forward(
-    code: Any, numbers: Any, first: int, last: int, columns: Any, begin: int, lanes: int, v: Any
-) -> None:
-    """Rows of v: the value at each position of [first, last), on data columns from `begin` on."""
-    for t in range(first, last):
-        if code[t, 0] <= VARIABLE:
-            j = VARIABLE - code[t, 0]
-            for lane in range(lanes):
-                v[t, lane] = columns[j, begin + lane]
-    execute(code, numbers, first, last, v, lanes, 0, v)

@@ -1,7 +1,8 @@
-"""Levenberg-Marquardt (Marquardt 1963) for the numbers of many expressions, with exact derivatives.
+"""Levenberg-Marquardt (Marquardt 1963) for the numbers of many expressions side by side, with exact derivatives.
 
-Steps solve (J'WJ + damping diag J'WJ) step = -J'W residual; the damping falls by 10 after a step that helps and rises
-by 4 after one that does not.
+The step solves (J'WJ + damping diag J'WJ) step = -J'W residual; the damping falls by 10 after a step that helps and
+rises by 4 after one that does not. `linearize` evaluates, `advance` decides: two kernels, so that the machine is
+compiled into one of them only.
 """
 
 from typing import Any
@@ -9,83 +10,87 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, OUT_MATRIX, VECTOR, kernel
-from gpsynth.kernels.derivatives import backward, forward
+from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, VECTOR, kernel
+from gpsynth.kernels.data_code import VARIABLE
+from gpsynth.kernels.data_machine import execute
+from gpsynth.kernels.derivatives import backward
 
-MOST = 24  # numbers of one expression
+MOST = 24  # numbers of one expression that are fitted
 BLOCK = 64
+LEAST_DAMPING, LARGEST_DAMPING = 1e-12, 1e12
+SETTLED = 1e-14  # a gain of less than this share ends a fit
+_INTEGERS = types.Array(types.int32, 1, "C")
 _NUMBERS = types.Array(types.float64, 1, "C")
-
-
-@kernel(types.float64(CODE, VECTOR, types.int64, types.int64, MATRIX, VECTOR, VECTOR, OUT_MATRIX))
-def squared_error(
-    code: Any, numbers: Any, first: int, last: int, columns: Any, y: Any, weights: Any, v: Any
-) -> float:
-    """The weighted sum of squared residuals of one expression; infinity if it is not finite."""
-    total = 0.0
-    for begin in range(0, columns.shape[1], BLOCK):
-        lanes = min(BLOCK, columns.shape[1] - begin)
-        forward(code, numbers, first, last, columns, begin, lanes, v)
-        for lane in range(lanes):
-            residual = v[last - 1, lane] - y[begin + lane]
-            total += weights[begin + lane] * residual * residual
-    return total if total < np.inf else np.inf
+_ROWS = types.Array(types.float64, 2, "C")
+_MATRICES = types.Array(types.float64, 3, "C")
 
 
 @kernel(
-    types.float64(
-        *(CODE, VECTOR, types.int64, types.int64, INTEGERS, types.int64, MATRIX, VECTOR, VECTOR),
-        *(OUT_MATRIX, OUT_MATRIX, OUT_MATRIX, _NUMBERS),
+    types.void(
+        *(CODE, VECTOR, INTEGERS, INTEGERS, INTEGERS, INTEGERS, MATRIX, VECTOR, VECTOR),
+        *(_INTEGERS, types.boolean, _NUMBERS, _ROWS, _MATRICES),
     )
 )
-def normal_equations(
+def linearize(
     code: Any,
     numbers: Any,
-    first: int,
-    last: int,
+    firsts: Any,
+    lasts: Any,
     places: Any,
-    count: int,
+    ends: Any,
     columns: Any,
     y: Any,
     weights: Any,
-    v: Any,
-    g: Any,
-    normal: Any,
-    slope: Any,
-) -> float:
-    """J'WJ and J'W residual by the numbers at `places`; returns the squared error."""
-    total = 0.0
-    for i in range(count):
-        slope[i] = 0.0
-        for k in range(i + 1):
-            normal[i, k] = 0.0
-    for begin in range(0, columns.shape[1], BLOCK):
-        lanes = min(BLOCK, columns.shape[1] - begin)
-        forward(code, numbers, first, last, columns, begin, lanes, v)
-        backward(code, first, last, v, g, lanes)
-        for lane in range(lanes):
-            v[last - 1, lane] = (v[last - 1, lane] - y[begin + lane]) * weights[begin + lane]
-            residual = v[last - 1, lane]
-            if weights[begin + lane] > 0.0:
-                total += residual * residual / weights[begin + lane]
-        for i in range(count):
-            row = places[i]
-            even, odd = 0.0, 0.0
-            for lane in range(0, lanes, 2):
-                even += g[row, lane] * v[last - 1, lane]
-                odd += g[row, lane + 1] * v[last - 1, lane + 1]
-            slope[i] += even + odd
-            for k in range(i + 1):
-                other = places[k]
+    active: Any,
+    derive: bool,
+    errors: Any,
+    slopes: Any,
+    normals: Any,
+) -> None:
+    """Squared errors of the active expressions p = positions [first, last); J'W residual and J'WJ if `derive`.
+
+    Numbers stand at places[ends[p - 1]:ends[p]]; columns (m, N), y and weights (N,), N even.
+    """
+    v, g = np.empty((len(code), BLOCK)), np.empty((len(code), BLOCK))
+    for p in range(len(firsts)):
+        if active[p] == 0:
+            continue
+        first, last, total = firsts[p], lasts[p], 0.0
+        begin = ends[p - 1] if p else 0
+        count = min(ends[p] - begin, MOST) if derive else 0
+        slopes[p, :count] = 0.0
+        normals[p, :count, :count] = 0.0
+        for start in range(0, columns.shape[1], BLOCK):
+            lanes = min(BLOCK, columns.shape[1] - start)
+            for t in range(first, last):
+                if code[t, 0] <= VARIABLE:
+                    for lane in range(lanes):
+                        v[t, lane] = columns[VARIABLE - code[t, 0], start + lane]
+            execute(code, numbers, first, last, v, lanes, 0, v)
+            if count:
+                backward(code, first, last, v, g, lanes)
+            for lane in range(lanes):
+                residual = v[last - 1, lane] - y[start + lane]
+                v[last - 1, lane] = residual * weights[start + lane]
+                total += residual * v[last - 1, lane]
+            for i in range(count):
+                row = places[begin + i]
                 even, odd = 0.0, 0.0
                 for lane in range(0, lanes, 2):
-                    even += g[row, lane] * g[other, lane] * weights[begin + lane]
-                    odd += g[row, lane + 1] * g[other, lane + 1] * weights[begin + lane + 1]
-                normal[i, k] += even + odd
-    return total if total < np.inf else np.inf
+                    even += g[row, lane] * v[last - 1, lane]
+                    odd += g[row, lane + 1] * v[last - 1, lane + 1]
+                slopes[p, i] += even + odd
+                for k in range(i + 1):
+                    other = places[begin + k]
+                    even, odd = 0.0, 0.0
+                    for lane in range(0, lanes, 2):
+                        even += g[row, lane] * g[other, lane] * weights[start + lane]
+                        odd += g[row, lane + 1] * g[other, lane + 1] * weights[start + lane + 1]
+                    normals[p, i, k] += even + odd
+        errors[p] = total if total < np.inf else np.inf
 
 
-@kernel(types.boolean(OUT_MATRIX, _NUMBERS, types.int64, types.float64, OUT_MATRIX, _NUMBERS))
+@kernel(types.boolean(_ROWS, _NUMBERS, types.int64, types.float64, _ROWS, _NUMBERS))
 def solve(normal: Any, slope: Any, count: int, damping: float, factor: Any, step: Any) -> bool:
     """The damped step by Cholesky's factorization; False if the matrix is not positive definite."""
     for i in range(count):
@@ -116,62 +121,82 @@ def solve(normal: Any, slope: Any, count: int, damping: float, factor: Any, step
 
 @kernel(
     types.void(
-        *(CODE, _NUMBERS, INTEGERS, INTEGERS, INTEGERS, INTEGERS, MATRIX, VECTOR, VECTOR, types.int64),
-        _NUMBERS,
+        *(_NUMBERS, _NUMBERS, INTEGERS, INTEGERS, _INTEGERS, _NUMBERS, _NUMBERS, _NUMBERS),
+        *(_ROWS, _MATRICES, _ROWS, _MATRICES, types.boolean),
     )
 )
-def fit(
-    code: Any,
+def advance(
     numbers: Any,
-    firsts: Any,
-    lasts: Any,
+    kept: Any,
     places: Any,
     ends: Any,
-    columns: Any,
-    y: Any,
-    weights: Any,
-    iterations: int,
+    active: Any,
+    damping: Any,
+    tried: Any,
     errors: Any,
+    slopes: Any,
+    normals: Any,
+    kept_slopes: Any,
+    kept_normals: Any,
+    last: bool,
 ) -> None:
-    """Improve numbers[places[ends[p - 1]:ends[p]]] of each expression p = positions [first, last); errors are final."""
-    longest = 0
-    for p in range(len(firsts)):
-        longest = max(longest, lasts[p])
-    v, g = np.empty((longest, BLOCK)), np.empty((longest, BLOCK))
-    normal, factor = np.empty((MOST, MOST)), np.empty((MOST, MOST))
-    slope, step, kept = np.empty(MOST), np.empty(MOST), np.empty(MOST)
-    for p in range(len(firsts)):
-        first, last = firsts[p], lasts[p]
+    """Keep the numbers that were tried where they are better, and set the next ones to try, unless this is the last time.
+
+    `kept`, `errors`, `kept_slopes`, `kept_normals` are the best so far of each expression; `active` ends at 0.
+    """
+    factor, step = np.empty((MOST, MOST)), np.empty(MOST)
+    for p in range(len(ends)):
+        if active[p] == 0:
+            continue
         begin = ends[p - 1] if p else 0
-        own = places[begin : ends[p]]
-        count = min(len(own), MOST)
-        error = squared_error(code, numbers, first, last, columns, y, weights, v)
-        damping = 1e-3
-        stale = True
-        for _ in range(iterations if (count > 0) & (error < np.inf) else 0):
-            if stale:
-                error = normal_equations(
-                    code, numbers, first, last, own, count, columns, y, weights, v, g, normal, slope
-                )
-                stale = False
-            if not solve(normal, slope, count, damping, factor, step):
-                damping = max(4.0 * damping, 1e-12)
-                continue
+        count = min(ends[p] - begin, MOST)
+        if tried[p] < errors[p]:
+            if (count == 0) | ((errors[p] < np.inf) & (errors[p] - tried[p] <= SETTLED * errors[p])):
+                active[p] = 0
+            errors[p] = tried[p]
+            damping[p] = max(0.1 * damping[p], LEAST_DAMPING)
             for i in range(count):
-                kept[i] = numbers[own[i]]
-                numbers[own[i]] = kept[i] + step[i]
-            tried = squared_error(code, numbers, first, last, columns, y, weights, v)
-            if tried < error:
-                settled = error - tried <= 1e-14 * error
-                error = tried
-                damping *= 0.1
-                stale = True
-                if settled:
-                    break
+                kept[places[begin + i]] = numbers[places[begin + i]]
+                kept_slopes[p, i] = slopes[p, i]
+                for k in range(i + 1):
+                    kept_normals[p, i, k] = normals[p, i, k]
+        else:
+            damping[p] = 4.0 * damping[p]
+        while active[p] and not last:
+            if (damping[p] > LARGEST_DAMPING) | (errors[p] == np.inf):
+                active[p] = 0
+            elif solve(kept_normals[p], kept_slopes[p], count, damping[p], factor, step):
+                break
             else:
-                for i in range(count):
-                    numbers[own[i]] = kept[i]
-                damping = 4.0 * damping
-                if damping > 1e12:
-                    break
-        errors[p] = error
+                damping[p] = 4.0 * damping[p]
+        for i in range(count):
+            place = places[begin + i]
+            numbers[place] = kept[place] + step[i] if active[p] and not last else kept[place]
+
+
+def fit(
+    code: Any, numbers: Any, spans: tuple[Any, Any], places: Any, ends: Any, data: tuple[Any, Any, Any], iterations: int
+) -> Any:
+    """Improve `numbers` in place; returns the squared errors (p,). spans: first and last positions of each expression.
+
+    data: columns (m, N), y (N,), weights (N,). Without iterations nothing but the errors is computed.
+    """
+    count = len(ends)
+    active, damping = np.ones(count, dtype=np.int32), np.full(count, 1e-3)
+    tried, errors = np.full(count, np.inf), np.full(count, np.inf)
+    slopes, kept_slopes = np.zeros((2, count, MOST))
+    normals, kept_normals = np.zeros((2, count, MOST, MOST))
+    kept = numbers.copy()
+    frozen = numbers.view()
+    frozen.flags.writeable = False
+    for k in range(iterations + 1):
+        linearize(code, frozen, *spans, places, ends, *data, active, iterations > 0, tried, slopes, normals)
+        if iterations == 0:
+            return tried
+        is_last = k == iterations
+        advance(
+            numbers, kept, places, ends, active, damping, tried, errors, slopes, normals, kept_slopes, kept_normals, is_last
+        )
+        if not active.any():
+            break
+    return errors

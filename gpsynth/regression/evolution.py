@@ -179,12 +179,11 @@ class _Problem:
         code = np.stack(
             (np.where(some.ops == CONSTANT, FILL, some.ops), np.arange(len(some.ops)), some.a, some.b), axis=1
         ).astype(np.int32)
-        values, errors = some.numbers.copy(), np.empty(len(chosen))
-        fitting.fit(
-            *(readonly(code), values, readonly(firsts), readonly(some.roots + np.int32(1)), readonly(constants)),
-            *(readonly(ends), self.columns, self.padded_y, self.padded_weights, STEPS, errors),
-        )
-        self.state.evaluations += 3 * STEPS * len(chosen)
+        values = some.numbers.copy()
+        spans = readonly(firsts), readonly(some.roots + np.int32(1))
+        rows = self.columns, self.padded_y, self.padded_weights
+        errors = fitting.fit(readonly(code), values, spans, readonly(constants), readonly(ends), rows, STEPS)
+        self.state.evaluations += STEPS * len(chosen)
         for k, tree in enumerate(chosen.tolist()):
             length = int(trees.lengths[k])
             scored.trees.numbers[tree, :length] = values[firsts[k] : firsts[k] + length]

@@ -15,7 +15,7 @@ from gpsynth.regression.expressions import Expression, number, variable
 
 LEAF, STEP, SHIFT = 2, 2, 3  # costs of a variable, of an operation, and of an operation with the number 1 or 2
 LARGEST = 1e10
-_UNARY = ("sqrt", "sin", "cos", "exp", "log", "tan", "tanh", "atan", "asin", "acos", "cbrt", "abs")
+_UNARY = ("sqrt", "sin", "cos", "exp", "log", "tanh", "atan", "abs")
 _VALUES = {
     "add": np.add,
     "sub": np.subtract,
@@ -23,11 +23,9 @@ _VALUES = {
     "div": np.divide,
     "square": np.square,
     "atan": np.arctan,
-    "asin": np.arcsin,
-    "acos": np.arccos,
     "max": np.maximum,
     "min": np.minimum,
-    **{name: getattr(np, name) for name in ("sqrt", "sin", "cos", "exp", "log", "tan", "tanh", "cbrt", "abs")},
+    **{name: getattr(np, name) for name in ("sqrt", "sin", "cos", "exp", "log", "tanh", "abs")},
 }
 
 Indices = npt.NDArray[np.int64]

@@ -57,11 +57,11 @@ def templates(state: State, library: Library, target: Target) -> None:
 
 def _rule(e: Expression) -> Expression:
     kind = e[0]
-    if kind in {"sin", "cos", "tan", "tanh", "atan"}:
+    if kind in {"sin", "cos", "tanh", "atan"}:
         return (kind, ("add", _scaled(e[1]), ZERO))
     if kind == "exp":
         return (kind, _scaled(e[1]))
-    if kind in {"log", "sqrt", "square", "cube", "cbrt"} and e[1][0] not in {"add", "sub"}:
+    if kind in {"log", "sqrt", "square", "cube"} and e[1][0] not in {"add", "sub"}:
         return (kind, ("add", e[1], ZERO))
     if kind == "div" and e[2][0] not in {"add", "sub", "variable"}:
         return (kind, e[1], ("add", e[2], ZERO))

@@ -53,20 +53,10 @@ def fit_numbers(expressions: Sequence[Expression], data: Data, iterations: int) 
         return []
     flat = flatten(expressions)
     values = flat.population.numbers.copy()
-    errors = np.empty(len(expressions))
-    fitting.fit(
-        readonly(_code(flat)),
-        values,
-        readonly(flat.firsts),
-        readonly(flat.population.roots + np.int32(1)),
-        readonly(flat.places),
-        readonly(flat.ends),
-        data.columns,
-        data.y,
-        data.weights,
-        iterations,
-        errors,
-    )
+    spans = readonly(flat.firsts), readonly(flat.population.roots + np.int32(1))
+    rows = data.columns, data.y, data.weights
+    places, ends = readonly(flat.places), readonly(flat.ends)
+    errors = fitting.fit(readonly(_code(flat)), values, spans, places, ends, rows, iterations)
     fitted, begin = [], 0
     for expression, end, error in zip(expressions, flat.ends, errors, strict=True):
         found = iter(values[flat.places[begin:end]].tolist())

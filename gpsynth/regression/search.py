@@ -14,6 +14,7 @@ from gpsynth.regression.state import State, shelf
 from gpsynth.regression.sums import exhaustive, greedy, multiples, multiplied
 from gpsynth.regression.targets import derived, plain
 
+LIMITS = (300, 3000, 20_000)  # formulas of a small, a middle and a large library
 ARITHMETIC = frozenset(("add", "sub", "mul", "div"))
 
 
@@ -60,10 +61,11 @@ def steps(state: State) -> Iterator[None]:
     polynomials(state, first)
     yield
     rows = inputs[state.rows]
-    full = enumerate_formulas(rows, functions, 20_000)
-    arithmetic = enumerate_formulas(rows, functions & ARITHMETIC, 20_000)
-    tiny, small, large = (shelf(full, limit, "formulas") for limit in (300, 3000, 20_000))
-    plainest, plainer, plain_large = (shelf(arithmetic, limit, "arithmetic") for limit in (300, 3000, 20_000))
+    full = enumerate_formulas(rows, functions, state.library)
+    arithmetic = enumerate_formulas(rows, functions & ARITHMETIC, state.library)
+    state.evaluations += len(full.ops) + len(arithmetic.ops)
+    tiny, small, large = (shelf(full, limit, "formulas") for limit in LIMITS)
+    plainest, plainer, plain_large = (shelf(arithmetic, limit, "arithmetic") for limit in LIMITS)
     plain_products, tiny_products = multiples(plainest, plainest), multiples(tiny, tiny)
     yield
     for target in first:

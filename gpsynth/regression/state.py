@@ -7,7 +7,7 @@ import numpy as np
 
 from gpsynth.arrays import Floats
 from gpsynth.regression import linear
-from gpsynth.regression.expressions import Expression, evaluate
+from gpsynth.regression.expressions import Expression, evaluate, number
 from gpsynth.regression.front import EXACT, Candidate, Front
 from gpsynth.regression.library import Library
 from gpsynth.regression.polish import HOPE, Data, polish
@@ -40,11 +40,12 @@ def shelf(library: Library, limit: int, name: str) -> Shelf:
 class State:
     """The state of a search; methods add to it."""
 
-    def __init__(self, data: Data, functions: frozenset[str], rng: np.random.Generator) -> None:
+    def __init__(self, data: Data, functions: frozenset[str], rng: np.random.Generator, library: int = 20_000) -> None:
         self.data, self.functions, self.rng = data, functions, rng
         count = len(data.inputs)
         self.rows = np.sort(rng.permutation(count)[:ROWS])
         self.y: Floats = data.y[:count]
+        self.library = library
         self.front = Front()
         self.loosened: set[Expression] = set()
         self.evaluations = 0
@@ -54,6 +55,11 @@ class State:
     def done(self) -> bool:
         """Whether what is left is rounding."""
         return self.front.error < EXACT
+
+    def constant(self) -> Candidate:
+        """The mean, for data that leave nothing to explain."""
+        weights = self.data.weights[: len(self.y)]
+        return Candidate(number(float(weights @ self.y / weights.sum())), 0.0, 1)
 
     def consider(
         self, expressions: Sequence[Expression], source: str, *, iterations: int = 12, hope: float = HOPE
