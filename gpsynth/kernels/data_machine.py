@@ -46,9 +46,7 @@ WIDTH = 8  # data are padded to a multiple of it
 
 
 @kernel(types.void(CODE, VECTOR, types.int64, types.int64, OUT_MATRIX, types.int64, types.int64, OUT_MATRIX))
-def execute(
-    code: Any, numbers: Any, first: int, last: int, w: Any, lanes: int, begin: int, out: Any
-) -> None:
+def execute(code: Any, numbers: Any, first: int, last: int, w: Any, lanes: int, begin: int, out: Any) -> None:
     """Run instructions [first, last) of code (c, 4) = operation, destination, operands, on columns of `w`."""
     widest_vectors()
     for index in range(first, last):

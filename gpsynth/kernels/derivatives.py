@@ -34,7 +34,6 @@ from gpsynth.kernels.data_code import (
 )
 
 
-
 @kernel(types.void(CODE, types.int64, types.int64, MATRIX, OUT_MATRIX, types.int64))
 def backward(code: Any, first: int, last: int, v: Any, g: Any, lanes: int) -> None:
     """Rows of g: derivative of the value at position last - 1 by each position; v holds the values."""

@@ -140,7 +140,7 @@ def advance(
     kept_normals: Any,
     last: bool,
 ) -> None:
-    """Keep the numbers that were tried where they are better, and set the next ones to try, unless this is the last time.
+    """Keep the numbers that were tried where they are better, and set the next ones to try, but not the last time.
 
     `kept`, `errors`, `kept_slopes`, `kept_normals` are the best so far of each expression; `active` ends at 0.
     """
@@ -175,7 +175,13 @@ def advance(
 
 
 def fit(
-    code: Any, numbers: Any, spans: tuple[Any, Any], places: Any, ends: Any, data: tuple[Any, Any, Any], iterations: int
+    code: Any,
+    numbers: Any,
+    spans: tuple[Any, Any],
+    places: Any,
+    ends: Any,
+    data: tuple[Any, Any, Any],
+    iterations: int,
 ) -> Any:
     """Improve `numbers` in place; returns the squared errors (p,). spans: first and last positions of each expression.
 
@@ -195,7 +201,19 @@ def fit(
             return tried
         is_last = k == iterations
         advance(
-            numbers, kept, places, ends, active, damping, tried, errors, slopes, normals, kept_slopes, kept_normals, is_last
+            numbers,
+            kept,
+            places,
+            ends,
+            active,
+            damping,
+            tried,
+            errors,
+            slopes,
+            normals,
+            kept_slopes,
+            kept_normals,
+            is_last,
         )
         if not active.any():
             break

@@ -38,7 +38,11 @@ def grow(
         open_ = 0
         for t in range(lengths[i]):
             remaining = lengths[i] - t - 1
-            kind, which, value = uniforms[i, DRAWS * t], uniforms[i, DRAWS * t + 1], uniforms[i, DRAWS * t + 2]
+            kind, which, value = (
+                uniforms[i, DRAWS * t],
+                uniforms[i, DRAWS * t + 1],
+                uniforms[i, DRAWS * t + 2],
+            )
             can_leaf = open_ <= remaining
             can_unary = (open_ >= 1) & (open_ - 1 <= remaining) & (len(unary) > 0)
             can_binary = (open_ >= 2) & (len(binary) > 0)
@@ -89,7 +93,7 @@ def vary(
     child_numbers: Any,
     child_lengths: Any,
 ) -> None:
-    """Children (c, L): tree mates[c, 0] with a subtree replaced by one of donor mates[c, 1], then perhaps one node changed.
+    """Children (c, L): tree mates[c, 0], a subtree replaced by one of donor mates[c, 1], then perhaps a node changed.
 
     A child that would be too long is its first parent. choices (c, CHOICES): two cuts, whether to change a node, which,
     how, and how much.
@@ -118,7 +122,9 @@ def vary(
             place = int(choices[c, 3] * length)
             op = children[c, place]
             if op == CONSTANT:
-                child_numbers[c, place] = child_numbers[c, place] * (0.5 + choices[c, 4]) + choices[c, 6] - 0.5
+                child_numbers[c, place] = (
+                    child_numbers[c, place] * (0.5 + choices[c, 4]) + choices[c, 6] - 0.5
+                )
             elif op <= VARIABLE:
                 children[c, place] = VARIABLE - int(choices[c, 4] * variables)
             elif arity(op) == 2:
@@ -127,7 +133,9 @@ def vary(
                 children[c, place] = unary[int(choices[c, 4] * len(unary))]
 
 
-@kernel(types.int64(_GENOMES, _NUMBERS, INTEGERS, _INTEGERS, _INTEGERS, _INTEGERS, _FLAT, _INTEGERS, _INTEGERS))
+@kernel(
+    types.int64(_GENOMES, _NUMBERS, INTEGERS, _INTEGERS, _INTEGERS, _INTEGERS, _FLAT, _INTEGERS, _INTEGERS)
+)
 def flatten(
     genomes: Any, numbers: Any, lengths: Any, ops: Any, a: Any, b: Any, values: Any, roots: Any, stack: Any
 ) -> int:

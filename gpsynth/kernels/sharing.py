@@ -43,7 +43,16 @@ _SECOND = 0xC2B2AE3D27D4EB4F - 2**64
     )
 )
 def share(
-    ops: Any, a: Any, b: Any, numbers: Any, table: Any, ids: Any, u_ops: Any, u_a: Any, u_b: Any, u_numbers: Any
+    ops: Any,
+    a: Any,
+    b: Any,
+    numbers: Any,
+    table: Any,
+    ids: Any,
+    u_ops: Any,
+    u_a: Any,
+    u_b: Any,
+    u_numbers: Any,
 ) -> int:
     """Unique nodes of flat expressions, in order of first appearance; `ids` says which each position is.
 
@@ -69,9 +78,9 @@ def share(
                 found = count
                 count += 1
                 break
-            if (u_ops[found] == op) & (u_a[found] == x) & (u_b[found] == y):
-                if op != CONSTANT or bits_of(u_numbers[found]) == bits:
-                    break
+            same = (u_ops[found] == op) & (u_a[found] == x) & (u_b[found] == y)
+            if same & ((op != CONSTANT) | (bits_of(u_numbers[found]) == bits)):
+                break
             place = (place + 1) & mask
         ids[t] = found
     return count
@@ -140,7 +149,12 @@ def place(
                     else:
                         row[operand] = rows
                         rows += 1
-                    code[length, 0], code[length, 1], code[length, 2], code[length, 3] = FILL, row[operand], 0, 0
+                    code[length, 0], code[length, 1], code[length, 2], code[length, 3] = (
+                        FILL,
+                        row[operand],
+                        0,
+                        0,
+                    )
                     immediate[length] = numbers[operand]
                     length += 1
             if freed:
@@ -166,7 +180,12 @@ def place(
                 code[length, 0], code[length, 1], code[length, 2], code[length, 3] = FILL, row[node], 0, 0
                 immediate[length] = numbers[node]
                 length += 1
-            code[length, 0], code[length, 1], code[length, 2], code[length, 3] = EMIT, output[node], row[node], 0
+            code[length, 0], code[length, 1], code[length, 2], code[length, 3] = (
+                EMIT,
+                output[node],
+                row[node],
+                0,
+            )
             immediate[length] = 0.0
             length += 1
             if (last[node] == _NONE) & (op > VARIABLE):

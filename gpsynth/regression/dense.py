@@ -1,23 +1,27 @@
-"""Polynomials and what a target makes of them, by least squares over all monomials of a degree."""
+"""The linear model, polynomials, and what a target makes of them, by least squares over all monomials of a degree."""
 
 from math import comb
 
 import numpy as np
 
 from gpsynth.regression import linear
-from gpsynth.regression.expressions import Expression
+from gpsynth.regression.expressions import Expression, variable
 from gpsynth.regression.state import State
 from gpsynth.regression.targets import Target
 
 DEGREE = 8
 MOST = 130  # monomials
+MOST_VARIABLES = 20  # of a linear model
 EXACT = 1e-18
 SMALL = 1e-7  # terms that contribute less are rounding
 
 
 def polynomials(state: State, targets: list[Target]) -> None:
-    """The polynomial of least degree that a target is exactly, if there is one; noise would need all its terms."""
+    """The linear model of y, and the polynomial of least degree that a target is exactly, if there is one."""
     count, m = state.data.inputs.shape
+    if m < min(count - 1, MOST_VARIABLES):
+        columns = np.ascontiguousarray(state.data.inputs.T)
+        state.consider([linear.sum_of([variable(j) for j in range(m)], columns, targets[0])], "linear model")
     basis = list(linear.monomials(state.data.inputs, DEGREE, min(count // 2, MOST)))[1:]
     if not basis:
         return

@@ -55,7 +55,9 @@ def regress(
         raise RegressionError(f"functions are some of {', '.join(NAMES)}; not {', '.join(unknown) or 'none'}")
     if evaluations < 1 or (seconds is not None and not seconds > 0.0):
         raise RegressionError(f"the budget is positive, not {evaluations} evaluations and {seconds} seconds")
-    labels = column_names(names, rows.shape[1]) if names is None else _checked(names, rows.shape[1], target_name)
+    labels = (
+        column_names(names, rows.shape[1]) if names is None else _checked(names, rows.shape[1], target_name)
+    )
     begin = time.process_time()
     library = min(LARGEST_LIBRARY, max(SMALLEST_LIBRARY, evaluations // 500))
     state = State(data_of(*merged(rows, y, given)), frozenset(functions), seeds.stream(seed), library)
@@ -80,7 +82,7 @@ def merged(rows: Floats, y: Floats, weights: Floats) -> tuple[Floats, Floats, Fl
     used = weights > 0.0
     whole = np.column_stack((rows[used], y[used]))
     unique, place = np.unique(whole, axis=0, return_inverse=True)
-    together = np.bincount(place.ravel(), weights=weights[used])
+    together = np.bincount(place.ravel(), weights=weights[used]).astype(np.float64)
     return np.ascontiguousarray(unique[:, :-1]), np.ascontiguousarray(unique[:, -1]), together
 
 
@@ -116,9 +118,9 @@ def _vector(what: str, values: npt.ArrayLike) -> Floats:
 
 def _numbers(what: str, values: npt.ArrayLike) -> Floats:
     try:
-        numbers = np.ascontiguousarray(values, dtype=np.float64) if np.ndim(values) else np.float64(values)
+        numbers = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
         raise RegressionError(f"{what} must hold numbers in rows of equal length") from None
     if not np.all(np.abs(numbers) < LARGEST):
         raise RegressionError(f"{what} must be finite and below {LARGEST:g}")
-    return np.asarray(numbers)
+    return np.ascontiguousarray(numbers) if numbers.ndim else numbers

@@ -8,14 +8,15 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from gpsynth.arrays import Floats, Ints
 from gpsynth.kernels import fitting, genomes
 from gpsynth.kernels.data_code import BINARY, CONSTANT, FILL, OPCODE
 from gpsynth.kernels.layout import readonly
 from gpsynth.regression.expressions import Expression, expression_of
-from gpsynth.regression.population import Population, columns_of, evaluate, share
 from gpsynth.regression.library import LARGEST
+from gpsynth.regression.population import Population, columns_of, evaluate, share
 from gpsynth.regression.selection import columns_of as columns_from
 from gpsynth.regression.selection import select
 from gpsynth.regression.state import TERMS, WIDTH, State
@@ -24,6 +25,7 @@ from gpsynth.regression.targets import Target, derived, plain
 SIZE = 600
 CHILDREN = 600
 LONGEST = 40  # nodes
+YOUNG = 15  # nodes of a random tree
 FITTED = 30  # children whose numbers are fitted in each generation
 STEPS = 4
 TOURNAMENT = 4
@@ -41,7 +43,7 @@ class Trees(NamedTuple):
     numbers: Floats  # (p, LONGEST)
     lengths: Ints  # (p,)
 
-    def take(self, which: Ints) -> "Trees":
+    def take(self, which: npt.NDArray[np.integer]) -> "Trees":
         """The trees with these indices."""
         return Trees(self.ops[which], self.numbers[which], self.lengths[which])
 
@@ -65,7 +67,7 @@ class Scored(NamedTuple):
 
 def evolve(state: State) -> Iterator[None]:
     """Generation after generation, without end; the best go into the state's front."""
-    problem = _Problem(state)
+    problem = Problem(state)
     y = plain(state.y)
     targets = [y, *derived(y, np.empty((len(state.y), 0)), state.functions)]
     while True:
@@ -87,19 +89,17 @@ def evolve(state: State) -> Iterator[None]:
         yield
 
 
-class _Problem:
+class Problem:
     """The data and the grammar of one search."""
 
     def __init__(self, state: State) -> None:
         self.state, self.rng = state, state.rng
         names = sorted(state.functions | ({"square"} if "mul" in state.functions else set()))
-        self.grammar = Grammar(
-            *(
-                readonly(np.array([OPCODE[n] for n in names if (n in BINARY) == two], dtype=np.int32))
-                for two in (False, True)
-            ),
-            state.data.inputs.shape[1],
+        unary, binary = (
+            readonly(np.array([OPCODE[name] for name in names if (name in BINARY) == two], dtype=np.int32))
+            for two in (False, True)
         )
+        self.grammar = Grammar(unary, binary, state.data.inputs.shape[1])
         rows = state.rows
         self.inputs = state.data.inputs[rows]
         self.columns = readonly(columns_of(self.inputs))
@@ -113,11 +113,10 @@ class _Problem:
 
     def random(self, count: int) -> Trees:
         """Random trees of 1 to 15 nodes."""
-        half = self.rng.integers(0, 8, count)
-        lengths = (2 * half + 1 if len(self.grammar.unary) == 0 else half * 2 + self.rng.integers(1, 3, count) - (half == 7))
-        lengths = np.clip(lengths, 1, LONGEST).astype(np.int32)
-        if len(self.grammar.binary) == 0:
-            lengths = np.minimum(lengths, 8).astype(np.int32)
+        longest = YOUNG if len(self.grammar.binary) else YOUNG // 2
+        lengths = self.rng.integers(1, longest + 1, count).astype(np.int32)
+        if len(self.grammar.unary) == 0:
+            lengths |= 1  # only odd lengths are trees then
         ops, numbers = np.zeros((count, LONGEST), dtype=np.int32), np.zeros((count, LONGEST))
         uniforms = self.rng.random((count, genomes.DRAWS * LONGEST))
         genomes.grow(*self.grammar, readonly(lengths), readonly(uniforms), ops, numbers)
@@ -128,37 +127,40 @@ class _Problem:
         self.state.evaluations += len(trees.lengths)
         shared = share(_flat(trees))
         values = evaluate(shared, self.columns)
-        results = np.empty((shared.count, 3))
+        results = np.empty((shared.distinct, 3))
         genomes.scaled_errors(readonly(values[:, : len(self.y)].copy()), self.y, self.weights, results)
         error, slope, constant = results[shared.outputs].T
         return Scored(trees, error / self.total, slope, constant)
 
-    def next_generation(self, parents: Scored) -> Scored:
-        """Children, the best of them fitted, and whoever is better lives."""
+    def children(self, parents: Scored) -> Trees:
+        """CHILDREN trees: parents by tournament, a subtree exchanged or replaced by a random one, a node changed."""
         count = len(parents.error)
         keys = parents.error * (1.0 + PARSIMONY * parents.trees.lengths)
         entrants = self.rng.integers(0, count, (2, CHILDREN, TOURNAMENT))
         mates = np.take_along_axis(entrants, keys[entrants].argmin(axis=2)[..., None], axis=2)[..., 0].T
         fresh = self.random(CHILDREN // 10)
-        donors = Trees(*(np.concatenate(pair) for pair in zip(parents.trees, fresh, strict=True)))
+        donors = _joined(parents.trees, fresh)
         mates[: 2 * len(fresh.lengths) : 2, 1] = count + np.arange(len(fresh.lengths))
-        children = Trees(np.zeros((CHILDREN, LONGEST), np.int32), np.zeros((CHILDREN, LONGEST)), np.zeros(CHILDREN, np.int32))
-        choices = self.rng.random((CHILDREN, genomes.CHOICES))
+        made = Trees(
+            np.zeros((CHILDREN, LONGEST), np.int32),
+            np.zeros((CHILDREN, LONGEST)),
+            np.zeros(CHILDREN, np.int32),
+        )
         genomes.vary(
             *self.grammar,
             *(parents.trees.ops, parents.trees.numbers, readonly(parents.trees.lengths)),
             *(donors.ops, donors.numbers, readonly(donors.lengths)),
             readonly(np.ascontiguousarray(mates, dtype=np.int32)),
-            readonly(choices),
-            *children,
+            readonly(self.rng.random((CHILDREN, genomes.CHOICES))),
+            *made,
         )
-        offspring = self.fitted(self.scored(children))
-        return self.survivors(
-            Scored(
-                Trees(*(np.concatenate(pair) for pair in zip(parents.trees, offspring.trees, strict=True))),
-                *(np.concatenate(pair) for pair in zip(parents[1:], offspring[1:], strict=True)),
-            )
-        )
+        return made
+
+    def next_generation(self, parents: Scored) -> Scored:
+        """Children, the best of them fitted, and whoever is better lives."""
+        offspring = self.fitted(self.scored(self.children(parents)))
+        values = (np.concatenate(pair) for pair in zip(parents[1:], offspring[1:], strict=True))
+        return self.survivors(Scored(_joined(parents.trees, offspring.trees), *values))
 
     def fitted(self, scored: Scored) -> Scored:
         """The best children with better numbers."""
@@ -188,7 +190,10 @@ class _Problem:
             length = int(trees.lengths[k])
             scored.trees.numbers[tree, :length] = values[firsts[k] : firsts[k] + length]
             scored.error[tree] = errors[k] / self.total
-            scored.constant[tree], scored.slope[tree] = values[firsts[k] + length], values[firsts[k] + length + 1]
+            scored.constant[tree], scored.slope[tree] = (
+                values[firsts[k] + length],
+                values[firsts[k] + length + 1],
+            )
         return scored
 
     def survivors(self, scored: Scored) -> Scored:
@@ -212,10 +217,11 @@ class _Problem:
         chosen = chosen[np.isfinite(population.error[chosen])]
         if len(chosen) == 0:
             return
-        flat = _scaled_flat(population.trees.take(chosen), population.slope[chosen], population.constant[chosen])
+        flat = _scaled_flat(
+            population.trees.take(chosen), population.slope[chosen], population.constant[chosen]
+        )
         found: list[Expression] = [expression_of(flat, int(root)) for root in flat.roots]
         self.state.consider(found, "evolution", iterations=20)
-
 
     def harvest(self, population: Scored, targets: list[Target]) -> None:
         """Sums of subtrees of the best trees, by forward selection: what evolved in different trees comes together."""
@@ -230,11 +236,19 @@ class _Problem:
         self.state.evaluations += len(usable) * len(targets)
 
         def expression(column: int) -> Expression:
-            return expression_of(flat, int(position[usable[columns.index[column]]]))
+            return expression_of(flat, int(position[usable[columns.formula[column]]]))
 
         for target in targets:
             subsets = select(columns, target.values[self.state.rows], terms=TERMS, width=WIDTH)
             self.state.consider_sums(subsets, expression, target, "sums of evolved subtrees")
+
+
+def _joined(first: Trees, second: Trees) -> Trees:
+    return Trees(
+        np.concatenate((first.ops, second.ops)),
+        np.concatenate((first.numbers, second.numbers)),
+        np.concatenate((first.lengths, second.lengths)),
+    )
 
 
 def _flat(trees: Trees) -> Population:

@@ -12,7 +12,7 @@ from gpsynth.arrays import Floats, Ints
 from gpsynth.builder import Builder
 from gpsynth.kernels.data_code import BINARY, CONSTANT, OPCODE, VARIABLE
 from gpsynth.program import Program
-from gpsynth.regression.population import Population
+from gpsynth.regression.population import Population, values_of
 
 Expression = tuple[Any, ...]
 
@@ -102,9 +102,8 @@ def flatten(expressions: Sequence[Expression]) -> Flat:
         roots.append(write(expression))
         ends.append(len(places))
     ops, a, b, values = zip(*rows, strict=True)
-    arrays = (np.array(part, dtype=np.int32) for part in (ops, a, b))
-    whole = Population(*arrays, np.array(values), np.array(roots, dtype=np.int32))
-    return Flat(whole, *(np.array(part, dtype=np.int32) for part in (firsts, places, ends)))
+    whole = Population(_ints(ops), _ints(a), _ints(b), np.array(values), _ints(roots))
+    return Flat(whole, _ints(firsts), _ints(places), _ints(ends))
 
 
 def expression_of(population: Population, root: int) -> Expression:
@@ -138,6 +137,8 @@ def program_of(expression: Expression, inputs: Sequence[str], name: str = "y") -
 
 def evaluate(expressions: Sequence[Expression], inputs: Floats) -> Floats:
     """The value of each expression (p, n) on rows (n, m)."""
-    from gpsynth.regression.population import values_of
-
     return values_of(flatten(expressions).population, inputs)
+
+
+def _ints(values: Sequence[int]) -> Ints:
+    return np.array(values, dtype=np.int32)

@@ -1,4 +1,4 @@
-"""Sums with common factors taken out, where that makes them smaller: Horner's scheme, and what else it generalizes to."""
+"""Sums with common factors taken out where that makes them smaller: Horner's scheme in several variables."""
 
 from collections.abc import Iterator
 

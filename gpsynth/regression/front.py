@@ -33,9 +33,13 @@ class Front:
 
     def admits(self, size: int, error: float) -> bool:
         """Whether nothing of this size or smaller is as good; errors below EXACT count as equal."""
-        return not any(
-            known <= size and candidate.error <= max(error, EXACT) for known, candidate in self._best.items()
-        ) and error < math.inf
+        return (
+            not any(
+                known <= size and candidate.error <= max(error, EXACT)
+                for known, candidate in self._best.items()
+            )
+            and error < math.inf
+        )
 
     def members(self) -> list[Candidate]:
         """From the smallest to the most accurate; errors below EXACT count as equal."""

@@ -1,6 +1,6 @@
 """A library of small formulas, enumerated from the cheapest on, each function once.
 
-Two formulas with the same values on the rows at hand are the same for us (semantic hashing); only the cheaper one stays.
+Two formulas with the same values on the rows at hand count as the same (semantic hashing); the cheaper one stays.
 """
 
 from collections.abc import Iterator
@@ -13,8 +13,13 @@ from gpsynth.arrays import Floats, Ints
 from gpsynth.kernels.data_code import BINARY, CONSTANT, OPCODE, VARIABLE
 from gpsynth.regression.expressions import Expression, number, variable
 
-LEAF, STEP, SHIFT = 2, 2, 3  # costs of a variable, of an operation, and of an operation with the number 1 or 2
+LEAF, STEP, SHIFT = (
+    2,
+    2,
+    3,
+)  # costs of a variable, of an operation, and of an operation with the number 1 or 2
 LARGEST = 1e10
+FARTHEST = 1e4  # arguments of sine and cosine beyond are noise
 _UNARY = ("sqrt", "sin", "cos", "exp", "log", "tanh", "atan", "abs")
 _VALUES = {
     "add": np.add,
@@ -40,6 +45,11 @@ class Library(NamedTuple):
     numbers: Floats  # (N,)
     costs: Ints  # (N,)
     values: Floats  # (N, r)
+
+    def first(self, limit: int) -> "Library":
+        """The cheapest formulas."""
+        ops, a, b, numbers, costs, values = (field[:limit] for field in self)
+        return Library(ops, a, b, numbers, costs, values)  # type: ignore[arg-type]
 
     def expression(self, index: int) -> Expression:
         """Formula `index` as a tree."""
@@ -83,34 +93,34 @@ def wrapped(library: Library, functions: frozenset[str], limit: int) -> Library:
 def _candidates(
     growing: "_Growing", functions: frozenset[str], cost: int
 ) -> Iterator[tuple[str, Indices, Indices]]:
-    one, two = growing.one, growing.two
-    below = growing.of_cost(cost - STEP)
-    shifted = growing.of_cost(cost - SHIFT)
-    if "mul" in functions:
-        yield "square", below, below
-    if "div" in functions:
-        yield "div", np.full_like(below, one), below
+    for name, a, b in (*_of_one(growing, cost), *_of_two(growing, cost)):
+        if ("mul" if name == "square" else name) in functions:
+            yield name, a, b
+
+
+def _of_one(growing: "_Growing", cost: int) -> Iterator[tuple[str, Indices, Indices]]:
+    """Functions of one formula; its reciprocal; the formula shifted by one, doubled, halved."""
+    below, shifted = growing.of_cost(cost - STEP), growing.of_cost(cost - SHIFT)
+    one, two = np.full_like(shifted, growing.one), np.full_like(shifted, growing.two)
+    yield "square", below, below
+    yield "div", np.full_like(below, growing.one), below
     for name in _UNARY:
-        if name in functions:
-            yield name, below, below
-    if "add" in functions:
-        yield "add", shifted, np.full_like(shifted, one)
-    if "sub" in functions:
-        yield "sub", shifted, np.full_like(shifted, one)
-        yield "sub", np.full_like(shifted, one), shifted
-    if "mul" in functions:
-        yield "mul", np.full_like(shifted, two), shifted
-    if "div" in functions:
-        yield "div", shifted, np.full_like(shifted, two)
+        yield name, below, below
+    yield "add", shifted, one
+    yield "sub", shifted, one
+    yield "sub", one, shifted
+    yield "mul", two, shifted
+    yield "div", shifted, two
+
+
+def _of_two(growing: "_Growing", cost: int) -> Iterator[tuple[str, Indices, Indices]]:
     for left in range(LEAF, cost - STEP - LEAF + 1):
         firsts, seconds = growing.of_cost(left), growing.of_cost(cost - STEP - left)
         a, b = (grid.ravel() for grid in np.meshgrid(firsts, seconds, indexing="ij"))
-        if "div" in functions:
-            yield "div", a, b
+        yield "div", a, b
         ordered = a < b
         for name in ("mul", "add", "sub", "max", "min"):
-            if name in functions:
-                yield name, a[ordered], b[ordered]
+            yield name, a[ordered], b[ordered]
 
 
 class _Growing:
@@ -161,6 +171,8 @@ class _Growing:
             largest = np.abs(values).max(axis=1)
             spread = values.max(axis=1) - values.min(axis=1)
         useful = (largest < LARGEST) & (spread > 1e-7 * largest)
+        if name in {"sin", "cos"}:
+            useful &= np.abs(operands[0]).max(axis=1) < FARTHEST
         values, a, b = values[useful], a[useful], b[useful]
         keys = _keys(values, self._projections)
         _, first = np.unique(keys, return_index=True)
@@ -196,7 +208,8 @@ def _keys(values: Floats, projections: Floats) -> Indices:
     """One integer for each row; rows that agree to eight digits agree in it."""
     scale = np.abs(values).max(axis=1) + 1e-300
     first, second = np.round(values @ projections / scale[:, None] * 1e8).T
-    return first.astype(np.int64) * 1_000_003 + second.astype(np.int64)
+    keys: Indices = first.astype(np.int64) * 1_000_003 + second.astype(np.int64)
+    return keys
 
 
 _NAMES = {code: name for name, code in OPCODE.items()}

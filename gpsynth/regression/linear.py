@@ -41,7 +41,9 @@ def quotient_of(
     """The formula with target (c0 + sum c_i above_i) / (1 + sum d_k below_k); terms are above, then target * below."""
     factors, constant = coefficients(terms, target.values)
     split = len(above)
-    numerator = total([(_settled(float(c)), e) for c, e in zip(factors[:split], above, strict=True)], constant)
+    numerator = total(
+        [(_settled(float(c)), e) for c, e in zip(factors[:split], above, strict=True)], constant
+    )
     denominator = total([(_settled(-float(c)), e) for c, e in zip(factors[split:], below, strict=True)], 1.0)
     return simplify(target.inverse(("div", numerator, denominator)))
 

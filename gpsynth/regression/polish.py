@@ -6,15 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gpsynth.arrays import Floats
+from gpsynth.arrays import Floats, Ints
 from gpsynth.kernels import fitting
 from gpsynth.kernels.data_code import CONSTANT, FILL
 from gpsynth.kernels.data_machine import WIDTH
 from gpsynth.kernels.layout import readonly
 from gpsynth.regression.algebra import simplify
+from gpsynth.regression.expressions import Expression, Flat, flatten, numbers, size, with_numbers
 from gpsynth.regression.factoring import compact
 from gpsynth.regression.front import Candidate, Front
-from gpsynth.regression.expressions import Expression, Flat, flatten, numbers, size, with_numbers
 
 LONGEST = 120  # nodes
 HOPE = 0.1  # a fit may bring the error down to this share
@@ -47,7 +47,9 @@ def data_of(inputs: Floats, y: Floats, weights: Floats) -> Data:
     )
 
 
-def fit_numbers(expressions: Sequence[Expression], data: Data, iterations: int) -> list[tuple[Expression, float]]:
+def fit_numbers(
+    expressions: Sequence[Expression], data: Data, iterations: int
+) -> list[tuple[Expression, float]]:
     """Each expression with its numbers improved, and its error; no iterations only measures."""
     if not expressions:
         return []
@@ -56,7 +58,7 @@ def fit_numbers(expressions: Sequence[Expression], data: Data, iterations: int) 
     spans = readonly(flat.firsts), readonly(flat.population.roots + np.int32(1))
     rows = data.columns, data.y, data.weights
     places, ends = readonly(flat.places), readonly(flat.ends)
-    errors = fitting.fit(readonly(_code(flat)), values, spans, places, ends, rows, iterations)
+    errors = fitting.fit(readonly(code_of(flat)), values, spans, places, ends, rows, iterations)
     fitted, begin = [], 0
     for expression, end, error in zip(expressions, flat.ends, errors, strict=True):
         found = iter(values[flat.places[begin:end]].tolist())
@@ -75,7 +77,9 @@ def polish(
     short = [e for e in dict.fromkeys(map(simplify, expressions)) if size(e) <= LONGEST]
     measured = fit_numbers(short, data, 0)
     hopeful = [e for e, error in measured if front.admits(size(e), hope * error)]
-    fitted = [(e, error) for e, error in fit_numbers(hopeful, data, iterations) if front.admits(size(e), error)]
+    fitted = [
+        (e, error) for e, error in fit_numbers(hopeful, data, iterations) if front.admits(size(e), error)
+    ]
     rounded = [simplify(_plain(e, near)) for e, _ in fitted for near in NEAR]
     plain = fit_numbers(rounded, data, 0)
     candidates = []
@@ -98,7 +102,8 @@ def _compacted(candidates: Sequence[Candidate], data: Data) -> list[Candidate]:
     ]
 
 
-def _code(flat: Flat) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:
+def code_of(flat: Flat) -> Ints:
+    """Instructions of the data machine for trees whose numbers change: each position has its own row."""
     whole = flat.population
     positions = np.arange(len(whole.ops), dtype=np.int32)
     ops = np.where(whole.ops == CONSTANT, FILL, whole.ops)

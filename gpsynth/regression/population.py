@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from gpsynth.arrays import Floats, Ints
 from gpsynth.errors import RegressionError
@@ -28,14 +29,14 @@ class Shared(NamedTuple):
 
     nodes: int  # unique nodes, leaves included
     outputs: Ints  # (p,) which output each expression is
-    count: int  # outputs
+    distinct: int  # outputs
     code: Ints  # (c, 4)
     numbers: Floats  # (c,)
     rows: int  # of the workspace
 
 
 def population(programs: Sequence[Program]) -> Population:
-    """Programs with one output and no parameters; raises RegressionError for an operation data cannot be fitted with."""
+    """Programs with one output and no parameters; raises RegressionError for operations regression does not have."""
     ops: list[int] = []
     a: list[int] = []
     b: list[int] = []
@@ -48,7 +49,9 @@ def population(programs: Sequence[Program]) -> Population:
             numbers.append(leaf.value)
         for row, operands in program.instructions:
             if row.name not in OPCODE:
-                raise RegressionError(f"{row.name} is no operation of regression; possible are {', '.join(NAMES)}")
+                raise RegressionError(
+                    f"{row.name} is no operation of regression; possible are {', '.join(NAMES)}"
+                )
             ops.append(OPCODE[row.name])
             numbers.append(0.0)
             a.extend([base] * (len(ops) - 1 - len(a)))
@@ -58,7 +61,7 @@ def population(programs: Sequence[Program]) -> Population:
         a.extend([base] * (len(ops) - len(a)))
         b.extend([base] * (len(ops) - len(b)))
         roots.append(base + int(program.outputs[0]))
-    return Population(*(np.array(part, dtype=np.int32) for part in (ops, a, b)), np.array(numbers), _ints(roots))
+    return Population(_ints(ops), _ints(a), _ints(b), np.array(numbers), _ints(roots))
 
 
 def share(whole: Population) -> Shared:
@@ -88,7 +91,7 @@ def columns_of(inputs: Floats) -> Floats:
 
 def evaluate(shared: Shared, columns: Floats, block: int = data_machine.BLOCK) -> Floats:
     """The values (u, N) of the unique outputs on columns (m, N) as `columns_of` makes them."""
-    out = np.empty((shared.count, columns.shape[1]))
+    out = np.empty((shared.distinct, columns.shape[1]))
     code, numbers, columns = sealed(_Group(shared.code, shared.numbers, columns))
     rows = max(shared.rows, len(columns))
     data_machine.run(code, numbers, columns, rows, min(block, columns.shape[1]), out)
@@ -107,5 +110,5 @@ class _Group(NamedTuple):
     columns: Floats
 
 
-def _ints(values: Sequence[int] | Ints) -> Ints:
+def _ints(values: npt.ArrayLike) -> Ints:
     return np.asarray(values, dtype=np.int32)

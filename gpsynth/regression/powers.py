@@ -22,16 +22,18 @@ def powers(state: State, shelf: Shelf, target: Target) -> None:
     columns = columns_of(logs[usable])
     goal = np.log(np.abs(values))
     subsets = select(columns, goal, terms=TERMS, width=WIDTH)
-    few = Columns(columns.unit[:PAIRED], columns.index[:PAIRED])
+    few = Columns(columns.unit[:PAIRED], columns.formula[:PAIRED])
     subsets += [Subset((i, j), rest) for i, j, rest in pairs(few, goal, np.empty((0, len(goal))), 4)]
     for single in select(few, goal, terms=1, width=6):
         given = few.unit[list(single.columns)]
-        some = Columns(few.unit[: PAIRED // 3], few.index[: PAIRED // 3])
-        subsets += [Subset((*single.columns, i, j), r * single.rest) for i, j, r in pairs(some, goal, given, 1)]
+        some = Columns(few.unit[: PAIRED // 3], few.formula[: PAIRED // 3])
+        subsets += [
+            Subset((*single.columns, i, j), r * single.rest) for i, j, r in pairs(some, goal, given, 1)
+        ]
     state.evaluations += len(few.unit) ** 2 // 2
     found: list[Expression] = []
     for subset in promising(subsets, each=4):
-        chosen = usable[columns.index[list(subset.columns)]]
+        chosen = usable[columns.formula[list(subset.columns)]]
         exponents, _ = linear.coefficients(logs[chosen], goal)
         product = linear.power_product([shelf.library.expression(int(k)) for k in chosen], exponents.tolist())
         if product is None:

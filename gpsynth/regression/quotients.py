@@ -14,7 +14,7 @@ PAIRED = 2500
 def quotients(state: State, shelf: Shelf, target: Target) -> None:
     """The best quotients of sums, by forward selection, and by all pairs beside the best single columns."""
     values = target.values[state.rows]
-    unit, varies = centered(values * shelf.library.values[shelf.columns.index])
+    unit, varies = centered(values * shelf.library.values[shelf.columns.formula])
     kept = np.flatnonzero(varies)
     count = len(shelf.columns.unit)
     origin = np.concatenate((np.arange(count), count + kept))
@@ -36,7 +36,9 @@ def quotients(state: State, shelf: Shelf, target: Target) -> None:
     state.consider(found, f"quotients of {shelf.name} of {target.name}")
 
 
-def _pairs(together: Columns, values: np.ndarray[tuple[int], np.dtype[np.float64]], few: int, count: int) -> list[Subset]:
+def _pairs(
+    together: Columns, values: np.ndarray[tuple[int], np.dtype[np.float64]], few: int, count: int
+) -> list[Subset]:
     """Pairs, and triples with one of the best single columns, among the first `few` above and below."""
     place = np.concatenate((np.arange(few), np.arange(count, min(count + few, len(together.unit)))))
     some = Columns(together.unit[place], place)

@@ -10,9 +10,9 @@ from gpsynth.regression.library import enumerate_formulas, wrapped
 from gpsynth.regression.loosening import loosen_front, templates
 from gpsynth.regression.powers import powers
 from gpsynth.regression.quotients import quotients
-from gpsynth.regression.state import State, shelf
+from gpsynth.regression.state import Shelf, State, shelf
 from gpsynth.regression.sums import exhaustive, greedy, multiples, multiplied
-from gpsynth.regression.targets import derived, plain
+from gpsynth.regression.targets import Target, derived, plain
 
 LIMITS = (300, 3000, 20_000)  # formulas of a small, a middle and a large library
 ARITHMETIC = frozenset(("add", "sub", "mul", "div"))
@@ -20,6 +20,7 @@ ARITHMETIC = frozenset(("add", "sub", "mul", "div"))
 
 SETTLING = 12  # least number of steps after a formula is exact, in which a smaller one may turn up
 BEGINNING = 20  # structured steps before evolution begins
+TEMPLATES, QUOTIENTS = 5, 2  # of how many targets these are tried
 LOOSENING = 15  # steps between two attempts with more numbers
 _OVER = object()
 GENERATIONS = 4  # of evolution for each structured step
@@ -53,73 +54,109 @@ def search(state: State, budget: Budget) -> State:
     return state
 
 
+class _Shelves(NamedTuple):
+    """Libraries of three sizes, of all functions and of arithmetic alone."""
+
+    tiny: Shelf
+    small: Shelf
+    large: Shelf
+    tiny_arithmetic: Shelf
+    small_arithmetic: Shelf
+    large_arithmetic: Shelf
+    functions_of_arithmetic: Shelf
+
+
 def steps(state: State) -> Iterator[None]:
-    """Each `next` does one step; the caller decides when it is enough."""
+    """Structures from the simplest on; each `next` does one step, the caller decides when it is enough."""
     inputs, functions = state.data.inputs, state.functions
     y = plain(state.y)
     first = [y, *derived(y, inputs, functions)]
     polynomials(state, first)
     yield
-    rows = inputs[state.rows]
-    full = enumerate_formulas(rows, functions, state.library)
-    arithmetic = enumerate_formulas(rows, functions & ARITHMETIC, state.library)
-    state.evaluations += len(full.ops) + len(arithmetic.ops)
+    shelves = _shelves(state)
+    yield
+    yield from _simple(state, shelves, first)
+    yield from _larger(state, shelves, first)
+    second = [target for level in first[1:] for target in derived(level, inputs, functions)]
+    yield from _deeper(state, shelves, first, second)
+
+
+def _shelves(state: State) -> _Shelves:
+    rows = state.data.inputs[state.rows]
+    full = enumerate_formulas(rows, state.functions, state.library)
+    arithmetic = enumerate_formulas(rows, state.functions & ARITHMETIC, state.library)
+    outer = wrapped(arithmetic, state.functions, state.library // 4)
+    state.evaluations += len(full.ops) + len(outer.ops)
     tiny, small, large = (shelf(full, limit, "formulas") for limit in LIMITS)
-    plainest, plainer, plain_large = (shelf(arithmetic, limit, "arithmetic") for limit in LIMITS)
-    plain_products, tiny_products = multiples(plainest, plainest), multiples(tiny, tiny)
-    yield
+    few, some, many = (shelf(arithmetic, limit, "arithmetic") for limit in LIMITS)
+    return _Shelves(
+        tiny, small, large, few, some, many, shelf(outer, len(outer.ops), "functions of arithmetic")
+    )
+
+
+def _simple(state: State, shelves: _Shelves, first: list[Target]) -> Iterator[None]:
+    """Sums, pairs, powers, products and templates of small formulas."""
+    y = first[0]
     for target in first:
-        greedy(state, tiny, target)
-        greedy(state, plainest, target)
-        greedy(state, small, target)
+        for some in (shelves.tiny, shelves.tiny_arithmetic, shelves.small):
+            greedy(state, some, target)
         yield
-    exhaustive(state, small, y)
+    exhaustive(state, shelves.small, y)
     yield
-    for some in (tiny, small, plainer):
+    for some in (shelves.tiny, shelves.small, shelves.small_arithmetic):
         powers(state, some, y)
         yield
+    products = [multiples(some, some) for some in (shelves.tiny_arithmetic, shelves.tiny)]
     for target in first:
-        multiplied(state, plain_products, target)
-        multiplied(state, tiny_products, target)
+        for pairs in products:
+            multiplied(state, pairs, target)
+        greedy(state, shelves.small_arithmetic, target)
         yield
-        greedy(state, plainer, target)
+    for target in first[:TEMPLATES]:
+        templates(state, shelves.small.library, target)
         yield
-    for target in first[:5]:
-        templates(state, full, target)
-        yield
-    exhaustive(state, large, y)
+
+
+def _larger(state: State, shelves: _Shelves, first: list[Target]) -> Iterator[None]:
+    """Pairs and products of more formulas; quotients of sums; powers of many."""
+    exhaustive(state, shelves.large, first[0])
     yield
-    large_products = multiples(tiny, large)
+    products = multiples(shelves.tiny, shelves.large)
     for target in first:
-        exhaustive(state, small, target)
+        exhaustive(state, shelves.small, target)
         yield
-        multiplied(state, large_products, target)
+        multiplied(state, products, target)
         yield
-    for target in first[:2]:
-        for some in (plainest, plainer, tiny, small):
+    for target in first[:QUOTIENTS]:
+        for some in (shelves.tiny_arithmetic, shelves.small_arithmetic, shelves.tiny, shelves.small):
             quotients(state, some, target)
             yield
-    for some in (plain_large, large):
-        powers(state, some, y)
+    for some in (shelves.large_arithmetic, shelves.large):
+        powers(state, some, first[0])
         yield
-    deep = shelf(wrapped(arithmetic, functions, 5000), 30_000, "functions of arithmetic")
-    plainer_products = multiples(plainer, plainer)
+
+
+def _deeper(state: State, shelves: _Shelves, first: list[Target], second: list[Target]) -> Iterator[None]:
+    """Functions of arithmetic, and everything once more for functions of functions of y."""
+    outer, small = shelves.functions_of_arithmetic, shelves.small_arithmetic
+    products = multiples(small, small)
     for target in first:
-        greedy(state, deep, target)
-        greedy(state, large, target)
-        multiplied(state, plainer_products, target)
+        greedy(state, outer, target)
+        greedy(state, shelves.large, target)
+        multiplied(state, products, target)
         yield
-    deep_products = multiples(tiny, deep)
+    products = multiples(shelves.tiny, outer)
     for target in first:
-        multiplied(state, deep_products, target)
+        multiplied(state, products, target)
         yield
-    second = [t for level in first[1:] for t in derived(level, inputs, functions)]
+    products = multiples(shelves.tiny, shelves.tiny)
     for target in second:
-        greedy(state, tiny, target)
-        greedy(state, small, target)
-        multiplied(state, tiny_products, target)
+        greedy(state, shelves.tiny, target)
+        greedy(state, shelves.small, target)
+        multiplied(state, products, target)
         yield
+    products = multiples(shelves.tiny, shelves.large)
     for target in second:
-        greedy(state, large, target)
-        multiplied(state, large_products, target)
+        greedy(state, shelves.large, target)
+        multiplied(state, products, target)
         yield

@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from gpsynth.arrays import Floats
 
-DEPENDENT = 1e-9  # a column with less than this share of its length outside the span adds nothing but rounding
+DEPENDENT = (
+    1e-9  # a column with less than this share of its length outside the span adds nothing but rounding
+)
 TILE = 256  # rows and columns of a block that is worked on several times, so that it stays in the cache
 Indices = npt.NDArray[np.int64]
 Floats32 = npt.NDArray[np.float32]
@@ -21,7 +23,7 @@ class Columns(NamedTuple):
     """Candidate columns, centered and scaled to length 1."""
 
     unit: Floats  # (N, r)
-    index: Indices  # (N,) which formula each is
+    formula: Indices  # (N,) which formula each is
 
 
 class Subset(NamedTuple):
@@ -40,7 +42,7 @@ def centered(values: Floats) -> tuple[Floats, npt.NDArray[np.bool_]]:
 
 
 def columns_of(values: Floats) -> Columns:
-    """The columns among the rows of `values` (N, r) that differ by more than shift and scale; cheaper ones are first."""
+    """The columns among the rows of `values` (N, r), cheaper ones first, that differ by more than shift and scale."""
     unit, varies = centered(values)
     kept = np.flatnonzero(varies)
     unit = unit[kept]
@@ -76,9 +78,7 @@ def select(columns: Columns, target: Floats, *, terms: int, width: int) -> list[
         bases = [basis for _, basis in grown]
         free = free[[beam for beam, _ in chosen]] - (np.stack([b[-1] for b in bases]) @ columns.unit.T) ** 2
         subsets = [(*subsets[beam], column) for beam, column in chosen]
-        found += [
-            Subset(subset, float(left @ left)) for subset, left in zip(subsets, residuals, strict=True)
-        ]
+        found += [Subset(subset, float(left @ left)) for subset, left in zip(subsets, residuals, strict=True)]
         if min(float(left @ left) for left in residuals) < 1e-24:
             break
     return found
@@ -152,7 +152,7 @@ def _pair_gains(unit: Floats, overlap: Floats, rows: slice, columns: slice) -> F
     np.subtract(1.0, cross, out=cross)
     gain[cross < 1e-8] = 0.0
     gain /= np.maximum(cross, 1e-8, out=cross)
-    return gain  # type: ignore[no-any-return]
+    return gain
 
 
 class Products(NamedTuple):
@@ -160,7 +160,9 @@ class Products(NamedTuple):
 
     left: Floats32  # (K, r)
     right: Floats32  # (N, r)
-    weights: Floats32  # (K, N) one over the squared length of the centered product; 0 if that is nearly constant
+    weights: (
+        Floats32  # (K, N) one over the squared length of the centered product; 0 if that is nearly constant
+    )
 
 
 def products_of(few: Floats, many: Floats) -> Products:

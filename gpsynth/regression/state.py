@@ -28,19 +28,21 @@ class Shelf(NamedTuple):
 
     def expression(self, column: int) -> Expression:
         """The formula of a column."""
-        return self.library.expression(int(self.columns.index[column]))
+        return self.library.expression(int(self.columns.formula[column]))
 
 
 def shelf(library: Library, limit: int, name: str) -> Shelf:
     """The first `limit` formulas of a library."""
-    part = Library(*(field[:limit] for field in library))
+    part = library.first(limit)
     return Shelf(part, columns_of(part.values), f"{name} {limit}")
 
 
 class State:
     """The state of a search; methods add to it."""
 
-    def __init__(self, data: Data, functions: frozenset[str], rng: np.random.Generator, library: int = 20_000) -> None:
+    def __init__(
+        self, data: Data, functions: frozenset[str], rng: np.random.Generator, library: int = 20_000
+    ) -> None:
         self.data, self.functions, self.rng = data, functions, rng
         count = len(data.inputs)
         self.rows = np.sort(rng.permutation(count)[:ROWS])

@@ -35,9 +35,9 @@ def greedy(state: State, shelf: Shelf, target: Target) -> None:
 def exhaustive(state: State, shelf: Shelf, target: Target, most: int = PAIRED) -> None:
     """The best sums of two, of all pairs there are; and of three beside each of the best single ones."""
     values = target.values[state.rows]
-    columns = Columns(shelf.columns.unit[:most], shelf.columns.index[:most])
+    columns = Columns(shelf.columns.unit[:most], shelf.columns.formula[:most])
     found = [Subset((i, j), rest) for i, j, rest in pairs(columns, values, np.empty((0, len(values))), 4)]
-    few = Columns(columns.unit[: most // 3], columns.index[: most // 3])
+    few = Columns(columns.unit[: most // 3], columns.formula[: most // 3])
     for single in select(few, values, terms=1, width=6):
         given = few.unit[list(single.columns)]
         triples = pairs(few, values, given, 1)
@@ -59,7 +59,9 @@ class Multiples(NamedTuple):
 def multiples(few: Shelf, many: Shelf) -> Multiples:
     """All products of two formulas."""
     left, right = (np.flatnonzero(shelf.library.costs > 0) for shelf in (few, many))
-    return Multiples(few, many, left, right, products_of(few.library.values[left], many.library.values[right]))
+    return Multiples(
+        few, many, left, right, products_of(few.library.values[left], many.library.values[right])
+    )
 
 
 def multiplied(state: State, multiples: Multiples, target: Target) -> None:
@@ -80,7 +82,7 @@ def multiplied(state: State, multiples: Multiples, target: Target) -> None:
         unit, varies = centered(_made(multiples, made))
         kept = np.flatnonzero(varies)
         together = Columns(
-            np.concatenate((few.columns.unit, unit[kept])), np.concatenate((few.columns.index, -1 - kept))
+            np.concatenate((few.columns.unit, unit[kept])), np.concatenate((few.columns.formula, -1 - kept))
         )
         subsets = select(together, values, terms=TERMS, width=WIDTH)
         best = min((s for s in subsets if len(s.columns) <= terms), key=lambda s: s.rest)
@@ -90,7 +92,7 @@ def multiplied(state: State, multiples: Multiples, target: Target) -> None:
         residual = _left_over(together.unit[list(best.columns)], values)
 
     def expression(column: int) -> Expression:
-        index = int(together.index[column])
+        index = int(together.formula[column])
         if index >= 0:
             return few.library.expression(index)
         i, j = made[-1 - index]
@@ -102,10 +104,12 @@ def multiplied(state: State, multiples: Multiples, target: Target) -> None:
 def _made(multiples: Multiples, made: list[tuple[int, int]]) -> Floats:
     i, j = np.array(made).T
     few, many = multiples.few.library.values, multiples.many.library.values
-    return few[multiples.left[i]] * many[multiples.right[j]]
+    made_of: Floats = few[multiples.left[i]] * many[multiples.right[j]]
+    return made_of
 
 
 def _left_over(columns: Floats, values: Floats) -> Floats:
     residual = values - values.mean()
     solution = np.linalg.lstsq(columns.T, residual, rcond=None)[0]
-    return residual - solution @ columns
+    left: Floats = residual - solution @ columns
+    return left

@@ -35,13 +35,19 @@ def derived(target: Target, inputs: Floats, functions: frozenset[str]) -> Iterat
     with np.errstate(all="ignore"):
         for name, values, inverse, needed in _steps(target.values, inputs):
             spread = np.ptp(values)
-            if needed <= functions and np.all(np.abs(values) < LARGEST) and spread > 1e-9 * np.abs(values).max():
+            if (
+                needed <= functions
+                and np.all(np.abs(values) < LARGEST)
+                and spread > 1e-9 * np.abs(values).max()
+            ):
                 yield Target(
                     name.format(target.name), values, _then(inverse, target.inverse), target.depth + 1
                 )
 
 
-def _then(first: Callable[[Expression], Expression], second: Callable[[Expression], Expression]) -> Callable[..., Expression]:
+def _then(
+    first: Callable[[Expression], Expression], second: Callable[[Expression], Expression]
+) -> Callable[..., Expression]:
     return lambda e: second(first(e))
 
 
