@@ -25,5 +25,6 @@ SIN, COS, ATAN = (CODES[name] for name in ("sin", "cos", "atan"))
 EXP, LOG, TANH = (CODES[name] for name in ("exp", "log", "tanh"))
 MAX, MIN = (CODES[name] for name in ("max", "min"))
 
-# Instructions beyond the table: one operand is a number, a row is filled with it, a row is an output.
-ADD_NUMBER, SUB_NUMBER, NUMBER_SUB, MUL_NUMBER, DIV_NUMBER, NUMBER_DIV, FILL, EMIT = range(100, 108)
+# Instructions beyond the table: one operand is a number, a row is filled with it, a row is an output,
+# or only its sums with the target are.
+ADD_NUMBER, SUB_NUMBER, NUMBER_SUB, MUL_NUMBER, DIV_NUMBER, NUMBER_DIV, FILL, EMIT, SCORE = range(100, 109)

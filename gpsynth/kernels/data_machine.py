@@ -33,6 +33,7 @@ from gpsynth.kernels.data_code import (
     NEG,
     NUMBER_DIV,
     NUMBER_SUB,
+    SCORE,
     SIN,
     SQRT,
     SQUARE,
@@ -47,7 +48,11 @@ WIDTH = 8  # data are padded to a multiple of it
 
 @kernel(types.void(CODE, VECTOR, types.int64, types.int64, OUT_MATRIX, types.int64, types.int64, OUT_MATRIX))
 def execute(code: Any, numbers: Any, first: int, last: int, w: Any, lanes: int, begin: int, out: Any) -> None:
-    """Run instructions [first, last) of code (c, 4) = operation, destination, operands, on columns of `w`."""
+    """Run instructions [first, last) of code (c, 4) = operation, destination, operands, on columns of `w`.
+
+    EMIT copies a row to row d of `out`. SCORE adds up, for a row of values minus their first, which it keeps, the
+    weighted values, squares and products with row b; row b + 1 holds the weights.
+    """
     widest_vectors()
     for index in range(first, last):
         operation, d, a, b = code[index, 0], code[index, 1], code[index, 2], code[index, 3]
@@ -88,6 +93,17 @@ def execute(code: Any, numbers: Any, first: int, last: int, w: Any, lanes: int, 
         elif operation == EMIT:
             for lane in range(lanes):
                 out[d, begin + lane] = w[a, lane]
+        elif operation == SCORE:
+            if begin == 0:
+                out[d, 3 * WIDTH] = w[a, 0]
+            shift = out[d, 3 * WIDTH]
+            for lane in range(0, lanes, WIDTH):
+                for k in range(WIDTH):
+                    value = w[a, lane + k] - shift
+                    weighted = value * w[b + 1, lane + k]
+                    out[d, k] += weighted
+                    out[d, WIDTH + k] += weighted * value
+                    out[d, 2 * WIDTH + k] += weighted * w[b, lane + k]
         elif operation == NEG:
             for lane in range(lanes):
                 w[d, lane] = -w[a, lane]

@@ -7,7 +7,7 @@ from typing import Any
 
 from numba import types
 
-from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, VECTOR, kernel
+from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, kernel
 from gpsynth.kernels.data_code import CONSTANT, DIV, MAX, MIN, VARIABLE
 
 _INTEGERS = types.Array(types.int32, 1, "C")
@@ -159,50 +159,3 @@ def flatten(
             count += 1
         roots[i] = count - 1
     return count
-
-
-@kernel(types.void(MATRIX, VECTOR, VECTOR, _NUMBERS))
-def scaled_errors(values: Any, y: Any, weights: Any, results: Any) -> None:
-    """For each row of values (p, n): error, slope and constant of the best slope * value + constant for y.
-
-    The error is the weighted squared residual; infinity where values are not finite (Keijzer 2003, linear scaling).
-    """
-    n = values.shape[1]
-    weight, total, squares = 0.0, 0.0, 0.0
-    for k in range(n):
-        weight += weights[k]
-        total += weights[k] * y[k]
-    mean = total / weight
-    for k in range(n):
-        squares += weights[k] * (y[k] - mean) * (y[k] - mean)
-    for i in range(len(values)):
-        s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
-        for k in range(0, n - 3, 4):
-            s0 += weights[k] * values[i, k]
-            s1 += weights[k + 1] * values[i, k + 1]
-            s2 += weights[k + 2] * values[i, k + 2]
-            s3 += weights[k + 3] * values[i, k + 3]
-        for k in range(n - n % 4, n):
-            s0 += weights[k] * values[i, k]
-        center = (s0 + s1 + s2 + s3) / weight
-        v0, v1, c0, c1 = 0.0, 0.0, 0.0, 0.0
-        for k in range(0, n - 1, 2):
-            d0, d1 = values[i, k] - center, values[i, k + 1] - center
-            v0 += weights[k] * d0 * d0
-            v1 += weights[k + 1] * d1 * d1
-            c0 += weights[k] * d0 * (y[k] - mean)
-            c1 += weights[k + 1] * d1 * (y[k + 1] - mean)
-        if n % 2:
-            d0 = values[i, n - 1] - center
-            v0 += weights[n - 1] * d0 * d0
-            c0 += weights[n - 1] * d0 * (y[n - 1] - mean)
-        variance, covariance = v0 + v1, c0 + c1
-        if variance > 1e-28 * weight * (1.0 + center * center) and variance < 1e300:
-            slope = covariance / variance
-            results[i, 0] = max(0.0, squares - slope * covariance)
-            results[i, 1] = slope
-            results[i, 2] = mean - slope * center
-        elif variance >= 0.0:
-            results[i, 0], results[i, 1], results[i, 2] = squares, 0.0, mean
-        else:
-            results[i, 0], results[i, 1], results[i, 2] = float("inf"), 0.0, mean

@@ -23,6 +23,7 @@ from gpsynth.kernels.data_code import (
     MUL_NUMBER,
     NUMBER_DIV,
     NUMBER_SUB,
+    SCORE,
     SUB,
     SUB_NUMBER,
     VARIABLE,
@@ -88,7 +89,7 @@ def share(
 
 @kernel(
     types.UniTuple(types.int64, 2)(
-        *(INTEGERS, INTEGERS, INTEGERS, VECTOR, INTEGERS, types.int64),
+        *(INTEGERS, INTEGERS, INTEGERS, VECTOR, INTEGERS, types.int64, types.int64),
         *(_INTEGERS, _INTEGERS, _INTEGERS, _CODE, _NUMBERS),
     )
 )
@@ -99,6 +100,7 @@ def place(
     numbers: Any,
     output: Any,
     variables: int,
+    target: int,
     last: Any,
     row: Any,
     free: Any,
@@ -107,7 +109,8 @@ def place(
 ) -> tuple[int, int]:
     """Instructions of unique nodes, numbers as immediates, rows given back after their last use: (length, rows).
 
-    `output` is the output a node is, or -1; `last`, `row`, `free` are scratch of one entry for each node.
+    `output` is the output a node is, or -1; outputs are scored against row `target` unless that is -1. `last`, `row`
+    and `free` are scratch of one entry for each node.
     """
     for node in range(len(ops)):
         last[node] = _NONE
@@ -181,10 +184,10 @@ def place(
                 immediate[length] = numbers[node]
                 length += 1
             code[length, 0], code[length, 1], code[length, 2], code[length, 3] = (
-                EMIT,
+                SCORE if target >= 0 else EMIT,
                 output[node],
                 row[node],
-                0,
+                max(target, 0),
             )
             immediate[length] = 0.0
             length += 1

@@ -16,7 +16,7 @@ from gpsynth.kernels.data_code import BINARY, CONSTANT, FILL, OPCODE
 from gpsynth.kernels.layout import readonly
 from gpsynth.regression.expressions import Expression, expression_of
 from gpsynth.regression.library import LARGEST
-from gpsynth.regression.population import Population, columns_of, evaluate, share
+from gpsynth.regression.population import Population, columns_of, evaluate, scores, scoring, share
 from gpsynth.regression.selection import columns_of as columns_from
 from gpsynth.regression.selection import select
 from gpsynth.regression.state import TERMS, WIDTH, State
@@ -103,13 +103,11 @@ class Problem:
         rows = state.rows
         self.inputs = state.data.inputs[rows]
         self.columns = readonly(columns_of(self.inputs))
-        self.y = readonly(state.y[rows].copy())
-        self.weights = readonly(state.data.weights[rows].copy())
+        weights = state.data.weights[rows].copy()
+        self.scoring = scoring(self.inputs, state.y[rows], weights)
         padding = self.columns.shape[1] - len(rows)
-        self.padded_y = readonly(np.pad(self.y, (0, padding)))
-        self.padded_weights = readonly(np.pad(self.weights, (0, padding)))
-        mean = self.weights @ self.y / self.weights.sum()
-        self.total = float(self.weights @ (self.y - mean) ** 2) or 1.0
+        self.padded_y = readonly(np.pad(state.y[rows], (0, padding)))
+        self.padded_weights = readonly(np.pad(weights, (0, padding)))
 
     def random(self, count: int) -> Trees:
         """Random trees of 1 to 15 nodes."""
@@ -125,12 +123,7 @@ class Problem:
     def scored(self, trees: Trees) -> Scored:
         """Errors of all trees; equal subtrees are evaluated once."""
         self.state.evaluations += len(trees.lengths)
-        shared = share(_flat(trees))
-        values = evaluate(shared, self.columns)
-        results = np.empty((shared.distinct, 3))
-        genomes.scaled_errors(readonly(values[:, : len(self.y)].copy()), self.y, self.weights, results)
-        error, slope, constant = results[shared.outputs].T
-        return Scored(trees, error / self.total, slope, constant)
+        return Scored(trees, *scores(_flat(trees), self.scoring))
 
     def children(self, parents: Scored) -> Trees:
         """CHILDREN trees: parents by tournament, a subtree exchanged or replaced by a random one, a node changed."""
@@ -189,7 +182,7 @@ class Problem:
         for k, tree in enumerate(chosen.tolist()):
             length = int(trees.lengths[k])
             scored.trees.numbers[tree, :length] = values[firsts[k] : firsts[k] + length]
-            scored.error[tree] = errors[k] / self.total
+            scored.error[tree] = errors[k] / (self.scoring.total or 1.0)
             scored.constant[tree], scored.slope[tree] = (
                 values[firsts[k] + length],
                 values[firsts[k] + length + 1],
@@ -228,7 +221,7 @@ class Problem:
         best = np.argsort(population.error, kind="stable")[:HARVESTED].astype(np.int32)
         flat = _flat(population.trees.take(best))
         shared = share(flat._replace(roots=np.arange(len(flat.ops), dtype=np.int32)))
-        values = evaluate(shared, self.columns)[:, : len(self.y)]
+        values = evaluate(shared, self.columns)[:, : len(self.inputs)]
         _, position = np.unique(shared.outputs, return_index=True)
         with np.errstate(all="ignore"):
             usable = np.flatnonzero(np.abs(values).max(axis=1) < LARGEST)

@@ -10,7 +10,7 @@ from gpsynth.arrays import Floats, Ints
 from gpsynth.errors import RegressionError
 from gpsynth.kernels import data_machine, sharing
 from gpsynth.kernels.data_code import CONSTANT, NAMES, OPCODE, VARIABLE
-from gpsynth.kernels.layout import sealed
+from gpsynth.kernels.layout import readonly, sealed
 from gpsynth.program import Program
 
 
@@ -33,6 +33,45 @@ class Shared(NamedTuple):
     code: Ints  # (c, 4)
     numbers: Floats  # (c,)
     rows: int  # of the workspace
+
+
+class Scoring(NamedTuple):
+    """Data to score expressions on: the best slope * value + constant for y."""
+
+    columns: Floats  # (m + 2, N) variables, y minus its mean, weights
+    mean: float  # of y
+    weight: float  # sum of the weights
+    total: float  # weighted squares of y minus its mean
+
+
+def scoring(inputs: Floats, y: Floats, weights: Floats) -> Scoring:
+    """Data for `scores`; rows that pad to the machine's width have weight 0."""
+    weight = float(weights.sum())
+    mean = float(weights @ y) / weight
+    extra = np.zeros((2, columns_of(inputs).shape[1]))
+    extra[:, : len(y)] = y - mean, weights
+    columns = readonly(np.concatenate((columns_of(inputs), extra)))
+    return Scoring(columns, mean, weight, float(weights @ (y - mean) ** 2))
+
+
+def scores(whole: Population, data: Scoring) -> tuple[Floats, Floats, Floats]:
+    """Error, slope and constant (p,) of each expression; the error is a share of y's squares, infinite where undefined.
+
+    Linear scaling (Keijzer 2003) in one pass: sums are taken of values minus the first of them.
+    """
+    shared = share(whole, data)
+    out = np.zeros((shared.distinct, 3 * data_machine.WIDTH + 1))
+    block = min(data_machine.BLOCK, data.columns.shape[1])
+    data_machine.run(readonly(shared.code), readonly(shared.numbers), data.columns, shared.rows, block, out)
+    with np.errstate(all="ignore"):
+        values, squares, products = out[:, :-1].reshape(-1, 3, data_machine.WIDTH).sum(axis=2).T
+        center = values / data.weight
+        variance = squares - values * center
+        slope = np.where(variance > 1e-28 * squares, products / variance, 0.0)
+        error = np.maximum(data.total - slope * products, 0.0) / (data.total or 1.0)
+        error = np.where(np.isfinite(squares) & np.isfinite(error), error, np.inf)
+        constant = data.mean - slope * (out[:, -1] + center)
+    return error[shared.outputs], slope[shared.outputs], constant[shared.outputs]
 
 
 def population(programs: Sequence[Program]) -> Population:
@@ -64,8 +103,8 @@ def population(programs: Sequence[Program]) -> Population:
     return Population(_ints(ops), _ints(a), _ints(b), np.array(numbers), _ints(roots))
 
 
-def share(whole: Population) -> Shared:
-    """One program of all expressions: equal subtrees once, rows reused."""
+def share(whole: Population, scored: Scoring | None = None) -> Shared:
+    """One program of all expressions: equal subtrees once, rows reused; outputs are values, or only scores."""
     size = len(whole.ops)
     table = np.zeros(1 << max(4, (2 * size - 1).bit_length()), dtype=np.int32)
     ids, ops, a, b, last, row, free = np.empty((7, size), dtype=np.int32)
@@ -78,8 +117,11 @@ def share(whole: Population) -> Shared:
     code = np.empty((3 * count + 2 * len(nodes), 4), dtype=np.int32)
     numbers = np.empty(len(code))
     unique = sealed(Population(ops[:count], a[:count], b[:count], values[:count], output))
-    variables = max(0, int(VARIABLE - ops[:count].min(initial=0)) + 1)
-    length, rows = sharing.place(*unique, variables, last, row, free, code, numbers)
+    if scored is None:
+        variables, target = max(0, int(VARIABLE - ops[:count].min(initial=0)) + 1), -1
+    else:
+        variables, target = len(scored.columns), len(scored.columns) - 2
+    length, rows = sharing.place(*unique, variables, target, last, row, free, code, numbers)
     return Shared(count, _ints(roots), len(nodes), code[:length], numbers[:length], max(rows, 1))
 
 

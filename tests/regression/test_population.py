@@ -9,7 +9,7 @@ from gpsynth.errors import RegressionError
 from gpsynth.kernels import elementary
 from gpsynth.kernels.data_code import BINARY, NAMES
 from gpsynth.regression.expressions import evaluate, flatten, program_of
-from gpsynth.regression.population import columns_of, population, share, values_of
+from gpsynth.regression.population import columns_of, population, scores, scoring, share, values_of
 from gpsynth.regression.population import evaluate as run
 from tests.regression.helpers import random_expression
 
@@ -83,6 +83,27 @@ def test_any_number_of_rows_gives_the_same_bits(count: int) -> None:
     trees = [random_expression(rng, 15, 2) for _ in range(8)]
     rows = rng.normal(size=(600, 2))
     assert same_bits(evaluate(trees, rows[:count]), np.ascontiguousarray(evaluate(trees, rows)[:, :count]))
+
+
+def test_scores_are_those_of_least_squares() -> None:
+    rng = np.random.default_rng(5)
+    rows, weights = rng.uniform(0.5, 2.0, (301, 2)), rng.uniform(0.5, 2.0, 301)
+    y = rows[:, 0] * rows[:, 1] + 1000.0
+    trees = [random_expression(rng, 9, 2) for _ in range(100)]
+    found = scores(flatten(trees).population, scoring(rows, y, weights))
+    w, target = weights.astype(np.longdouble), y.astype(np.longdouble)
+    target -= w @ target / w.sum()
+    total = w @ target**2
+    for values, error, slope, constant in zip(evaluate(trees, rows), *found, strict=True):
+        if not np.all(np.isfinite(values)):
+            assert error == np.inf
+            continue
+        centered = values - w @ values / w.sum()
+        overlap, squares = w @ (centered * target), w @ centered**2
+        assert error == pytest.approx(
+            float(1.0 - (overlap**2 / squares if squares > 0.0 else 0.0) / total), abs=1e-9
+        )
+        assert w @ (y - slope * values - constant) ** 2 / total == pytest.approx(error, abs=1e-6)
 
 
 def test_an_operation_without_derivative_is_named() -> None:
