@@ -7,7 +7,7 @@ import tomllib
 from math import isnan, nan
 from pathlib import Path
 
-from gpsynth.encodings.network_operator import ROBOT_OPERATIONS
+from gpsynth.encodings.network_operator_matrix import ROBOT_OPERATIONS
 from gpsynth.kernels.elementary import evaluate
 from gpsynth.operations import GP_NAMES, OPERATIONS, Operation
 from tests.kernels.test_elementary_accuracy import EXACT, ROUNDED_TERMS
@@ -54,7 +54,7 @@ SETS = """\
 `gpsynth.operations.GP_NAMES`, finite for all finite operands up to 1e8:
 {gp}.
 
-`gpsynth.encodings.network_operator.ROBOT_OPERATIONS`, the functions that the published robot programs draw from:
+`gpsynth.encodings.network_operator_matrix.ROBOT_OPERATIONS`, the functions that the published robot programs draw from:
 {robot}.
 """
 

@@ -7,17 +7,23 @@ from gpsynth.errors import GpsynthError
 
 if TYPE_CHECKING:
     from gpsynth.builder import Builder, bind, compose, simplify
+    from gpsynth.draws import Draws, crossed, random_draws
     from gpsynth.encodings.cartesian import CartesianEncoding
-    from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
+    from gpsynth.encodings.rules import Rules
+    from gpsynth.encodings.template import TemplateEncoding
     from gpsynth.encodings.tree import TreeEncoding
+    from gpsynth.encodings.variational import VariationalEncoding
+    from gpsynth.epochs import Epochs
     from gpsynth.evaluate import Evaluator, Rollouts
     from gpsynth.law import Law
+    from gpsynth.objective import Objective
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
     from gpsynth.planning import Plan, PlanSettings, plan
     from gpsynth.plant import Plant
     from gpsynth.problem import Obstacles, Problem
     from gpsynth.program import Program
+    from gpsynth.refitting import refit
     from gpsynth.regression.entry import regress
     from gpsynth.regression.estimator import SymbolicRegressor
     from gpsynth.regression.result import RegressionResult
@@ -27,6 +33,11 @@ if TYPE_CHECKING:
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
     from gpsynth.tracing import trace, where, wrap_angle
+    from gpsynth.tradeoffs import Tradeoffs, synthesize_tradeoffs
+    from gpsynth.units import UnitReport, check_units
+    from gpsynth.variational_ga import VariationalGA
+    from gpsynth.verify.robustness import Robustness, assess
+    from gpsynth.verify.stress import Stress
 
 __version__ = "0.1.0"
 
@@ -35,13 +46,20 @@ _HOME = {
     "bind": "builder",
     "compose": "builder",
     "simplify": "builder",
+    "Draws": "draws",
+    "crossed": "draws",
+    "random_draws": "draws",
     "CartesianEncoding": "encodings.cartesian",
-    "NetworkOperatorEncoding": "encodings.network_operator",
     "ParameterSpace": "encodings.parameters",
+    "Rules": "encodings.rules",
+    "TemplateEncoding": "encodings.template",
     "TreeEncoding": "encodings.tree",
+    "VariationalEncoding": "encodings.variational",
+    "Epochs": "epochs",
     "Evaluator": "evaluate",
     "Rollouts": "evaluate",
     "Law": "law",
+    "Objective": "objective",
     "CMAES": "optimizers",
     "NSGA2": "optimizers",
     "PSO": "optimizers",
@@ -57,6 +75,7 @@ _HOME = {
     "RegressionResult": "regression.result",
     "SymbolicRegressor": "regression.estimator",
     "regress": "regression.entry",
+    "refit": "refitting",
     "Schedule": "schedule",
     "stream": "seeds",
     "Trajectory": "simulation",
@@ -67,6 +86,14 @@ _HOME = {
     "trace": "tracing",
     "where": "tracing",
     "wrap_angle": "tracing",
+    "VariationalGA": "variational_ga",
+    "Robustness": "verify.robustness",
+    "assess": "verify.robustness",
+    "Stress": "verify.stress",
+    "Tradeoffs": "tradeoffs",
+    "synthesize_tradeoffs": "tradeoffs",
+    "UnitReport": "units",
+    "check_units": "units",
 }  # public name -> module; loaded on first use, so that `import gpsynth` does not wait for numba
 
 __all__ = [
@@ -76,10 +103,12 @@ __all__ = [
     "Builder",
     "CartesianEncoding",
     "DifferentialEvolution",
+    "Draws",
+    "Epochs",
     "Evaluator",
     "GpsynthError",
     "Law",
-    "NetworkOperatorEncoding",
+    "Objective",
     "Obstacles",
     "ParameterSpace",
     "Plan",
@@ -88,23 +117,37 @@ __all__ = [
     "Problem",
     "Program",
     "RegressionResult",
+    "Robustness",
     "Rollouts",
+    "Rules",
     "Schedule",
+    "Stress",
     "StructureSearch",
     "SymbolicRegressor",
     "SynthesisResult",
+    "TemplateEncoding",
+    "Tradeoffs",
     "Trajectory",
     "TreeEncoding",
+    "UnitReport",
+    "VariationalEncoding",
+    "VariationalGA",
     "__version__",
+    "assess",
     "bind",
+    "check_units",
     "compose",
+    "crossed",
     "minimize",
     "plan",
+    "random_draws",
+    "refit",
     "regress",
     "simplify",
     "simulate",
     "stream",
     "synthesize",
+    "synthesize_tradeoffs",
     "trace",
     "where",
     "wrap_angle",

@@ -1,18 +1,17 @@
-"""The command `gpsynth`: synthesize a law for the plant in a Python file, export a law, say what is in one."""
+"""The command `gpsynth`: synthesize a law for the plant in a Python file, export, assess and describe laws."""
 
 import os
-import runpy
 import sys
-import traceback
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeGuard, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 
 import click
 
 from gpsynth import __version__
-from gpsynth.errors import FileError, GpsynthError, LawError, ProblemError
+from gpsynth.errors import FileError, GpsynthError, LawError
+from gpsynth.files import write_json
 
 if TYPE_CHECKING:
     from gpsynth.encodings.protocol import Encoding
@@ -27,6 +26,7 @@ EncodingName = Literal["tree", "cartesian", "network-operator"]
 ENCODINGS: tuple[EncodingName, ...] = get_args(EncodingName)
 FORMATS = ("json", "text", "latex", "c", "python")
 FRONT_FORMAT = "gpsynth-front/1"
+TASK, TASK_FORMAT = "synthesis.json", "gpsynth-synthesis/1"
 LOADING = "loading; the first time, the kernels are compiled"
 Command = TypeVar("Command", bound=Callable[..., Any])
 MOST_SEED = 2**53 - 1  # the largest integer that every reader of JSON keeps
@@ -107,24 +107,37 @@ def synthesize(
     """
     with status(LOADING):
         from gpsynth import synthesis
-    problem, own = read_plant_file(plant_file)
-    encoding = (
-        own if own is not None and encoding_name is None else named_encoding(encoding_name or "tree", problem)
-    )
+    problem, encoding = _task(plant_file, encoding_name)
     synthesis.check_encoding(problem, encoding)
     folder = begin(out or Path("runs") / plant_file.stem, seed)
-    result = synthesis.synthesize(
-        problem,
-        encoding,
-        seed=seed,
-        budget=budget,
-        threads=threads,
-        progress=True,
-        callback=recorder(folder, problem),
+    task = {
+        "plant_file": str(plant_file.absolute()),
+        "encoding": encoding_name,
+        "seed": seed,
+        "budget": budget,
+    }
+    write_json(folder.folder / TASK, {"format": TASK_FORMAT, **task})
+    _synthesize(folder, problem, encoding, seed=seed, budget=budget, threads=threads)
+
+
+@cli.command()
+@click.argument("run_folder", metavar="RUN", type=click.Path(path_type=Path))
+@click.option("--budget", type=click.IntRange(min=1), help="Evaluations in all. [default: the run's]")
+@threads_option
+def resume(run_folder: Path, budget: int | None, threads: int) -> None:
+    """Go on with a synthesis that was ended in the run folder RUN.
+
+    The result is that of a run without interruption. The plant file is executed again: run only files you trust.
+    """
+    from gpsynth.record import Run
+
+    task = read_task(run_folder)
+    with status(LOADING):
+        problem, encoding = _task(Path(task["plant_file"]), task["encoding"])
+    budget = budget or task["budget"]
+    _synthesize(
+        Run(run_folder), problem, encoding, seed=task["seed"], budget=budget, threads=threads, resume=True
     )
-    write_result(result, folder)
-    click.echo(result.table())
-    click.echo(f"the law of least cost, its exports and the front are in {folder.folder}")
 
 
 @cli.command()
@@ -138,6 +151,22 @@ def export(law_file: Path, out: Path, name: str, formats: tuple[str, ...]) -> No
     """Write a law as JSON, text, LaTeX, C99 and Python."""
     for path in export_law(load_law(law_file), out, name=name, formats=formats):
         click.echo(path)
+
+
+@cli.command()
+@law_argument
+@click.argument("plant_file", metavar="PLANT.py", type=click.Path(path_type=Path))
+@threads_option
+def assess(law_file: Path, plant_file: Path, threads: int) -> None:
+    """Say how a law does on the problem in PLANT.py: as given, with a finer clock, with other limits.
+
+    PLANT.py is code and is executed, as in synthesize.
+    """
+    with status(LOADING):
+        from gpsynth.plant_file import read_plant_file
+        from gpsynth.verify import robustness
+    law = load_law(law_file)
+    click.echo(robustness.assess(law, read_plant_file(plant_file)[0], threads=threads).table())
 
 
 @cli.command()
@@ -160,6 +189,47 @@ def info(law_file: Path) -> None:
         f"read with   {', '.join(f'{package} {text}' for package, text in versions(__version__).items())}"
     )
     click.echo("\n".join(["", *law.formulas()]))
+
+
+def read_task(folder: Path) -> dict[str, Any]:
+    """What `synthesize` was asked to do in a run folder; raises FileError if that is not written there."""
+    from gpsynth.files import read_json
+
+    task = read_json(folder / TASK)
+    kinds = {"format": str, "plant_file": str, "encoding": str | None, "seed": int, "budget": int}
+    if not isinstance(task, dict) or task.get("format") != TASK_FORMAT or set(task) != set(kinds):
+        raise FileError(f"{folder / TASK} is no task of format {TASK_FORMAT!r}")
+    wrong = [name for name, kind in kinds.items() if not isinstance(task[name], kind)]
+    if wrong or task["encoding"] not in (None, *ENCODINGS):
+        raise FileError(f"{folder / TASK} has a wrong {(*wrong, 'encoding')[0]}")
+    return task
+
+
+def _task(plant_file: Path, encoding_name: EncodingName | None) -> tuple["Problem", "Encoding[Any]"]:
+    """The problem in a file, and the encoding that is named, or else the file's, or else trees."""
+    from gpsynth.plant_file import read_plant_file
+
+    problem, own = read_plant_file(plant_file)
+    if own is not None and encoding_name is None:
+        return problem, own
+    return problem, named_encoding(encoding_name or "tree", problem)
+
+
+def _synthesize(folder: "Run", problem: "Problem", encoding: "Encoding[Any]", **settings: Any) -> None:
+    """Search, and write what was found, also after Ctrl-C."""
+    from gpsynth import synthesis
+
+    result = synthesis.synthesize(
+        problem,
+        encoding,
+        folder=folder.folder,
+        progress=True,
+        callback=recorder(folder, problem),
+        **settings,
+    )
+    write_result(result, folder)
+    click.echo(result.table())
+    click.echo(f"the law of least cost, its exports and the front are in {folder.folder}")
 
 
 @contextmanager
@@ -209,53 +279,18 @@ def export_law(law: "Law", folder: Path, *, name: str = "law", formats: Sequence
     return list(texts)
 
 
-def read_plant_file(path: Path) -> tuple["Problem", "Encoding[Any] | None"]:
-    """Execute a Python file and take its `problem` and, if it has one, its `encoding`.
-
-    Raises FileError if there is no such file or it fails, ProblemError if one of the two is something else, and what is
-    wrong with the plant or problem under its own name, with the file and line in front.
-    """
-    from gpsynth.problem import Problem
-
-    if not path.is_file():
-        raise FileError(f"{path} {'is not a file' if path.exists() else 'does not exist'}")
-    try:
-        names = runpy.run_path(str(path))
-    except GpsynthError as error:
-        text = str(error)  # of tracing, which names a line itself
-        raise type(error)(text if text.startswith(str(path)) else f"{_place(path, error)}: {text}") from None
-    except (Exception, SystemExit) as error:  # noqa: BLE001 a plant file is code and may raise anything
-        text = error.msg if _is_syntax_of(error, path) else str(error)
-        raise FileError(f"{_place(path, error)}: {type(error).__name__}: {text}") from None
-    problem = names.get("problem")
-    if not isinstance(problem, Problem):
-        found = (
-            f"defines it as {type(problem).__name__}"
-            if "problem" in names
-            else "defines nothing of that name"
-        )
-        raise ProblemError(f"{path} must define `problem`, a gpsynth.Problem, but {found}")
-    encoding = names.get("encoding")
-    if encoding is not None and not _is_encoding(encoding):
-        raise ProblemError(
-            f"{path} must define `encoding`, if at all, as an encoding such as gpsynth.TreeEncoding(...), "
-            f"but defines it as {encoding!r}"
-        )
-    return problem, encoding
-
-
 def named_encoding(name: EncodingName, problem: "Problem") -> "Encoding[Any]":
     """An encoding for the problem's features and controls, with operations of general use."""
     from gpsynth.encodings.cartesian import CartesianEncoding
-    from gpsynth.encodings.network_operator import NetworkOperatorEncoding
     from gpsynth.encodings.parameters import ParameterSpace
     from gpsynth.encodings.tree import TreeEncoding
+    from gpsynth.encodings.variational import VariationalEncoding
 
     inputs, outputs = problem.features.names, problem.plant.control_names
     operations = ("add", "sub", "mul", "div_protected", "sin", "cos", "tanh", "sqrt_protected", "min", "max")
     space = ParameterSpace(count=8)
     if name == "network-operator":
-        return NetworkOperatorEncoding(inputs, outputs, space=space)
+        return VariationalEncoding(inputs, outputs, space=space)
     if name == "cartesian":
         return CartesianEncoding(inputs, outputs, operations, space)
     return TreeEncoding(inputs, outputs, operations, space)
@@ -265,27 +300,38 @@ def recorder(folder: "Run", problem: "Problem") -> Callable[["Progress[SearchSta
     """A callback of `synthesize` that logs each generation and keeps the best law so far in law.json."""
     from gpsynth.law import Law
 
+    begun = False
+
     def record(progress: "Progress[SearchState[Any]]") -> None:
+        nonlocal begun
+        if not begun:
+            folder.rewind(progress.generation)
+            begun = True
         evaluations, cost = progress.history[-1] if progress.history else (0, float("inf"))
         folder.log(
             "synthesis", generation=progress.generation, evaluations=progress.evaluations, best_cost=cost
         )
         if evaluations == progress.evaluations:
-            best = progress.state.population[0]
+            best = progress.state.front[-1]
             Law(problem.plant, problem.features, best.program, best.values).save(folder.folder / "law.json")
 
     return record
 
 
 def write_result(result: "SynthesisResult", folder: "Run") -> None:
-    """Write the law of least cost in every form and the front; raises LawError if nothing was found."""
-    from gpsynth.files import write_json
+    """Write the law of least cost in every form and the front; raises LawError if nothing was found.
+
+    Raises KeyboardInterrupt when that is done, if Ctrl-C has ended the search.
+    """
+    from gpsynth.runs import INTERRUPTED as CUT_SHORT
 
     if not result.front:
         raise LawError(f"no law with a finite cost was found in {result.evaluations} evaluations")
     export_law(result.law, folder.folder)
     front = [_described(entry) for entry in result.front]
     write_json(folder.folder / "front.json", {"format": FRONT_FORMAT, "laws": front})
+    if result.reason == CUT_SHORT:
+        raise KeyboardInterrupt
 
 
 def _described(entry: "FrontEntry") -> dict[str, Any]:
@@ -296,27 +342,6 @@ def _described(entry: "FrontEntry") -> dict[str, Any]:
         "median_time": entry.median_time if entry.reached > 0.0 else None,  # s
         "law": entry.law.to_dict(),
     }
-
-
-def _place(path: Path, error: BaseException) -> str:
-    """The file and, if the error passed through it, the line."""
-    if _is_syntax_of(error, path):
-        return f"{path}, line {error.lineno}"
-    lines = [
-        frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
-    ]
-    return f"{path}, line {lines[-1]}" if lines else str(path)
-
-
-def _is_syntax_of(error: BaseException, path: Path) -> TypeGuard[SyntaxError]:
-    """Whether the file itself is not Python."""
-    return isinstance(error, SyntaxError) and error.filename == str(path)
-
-
-def _is_encoding(value: Any) -> bool:
-    """Whether a value is made like the protocol `Encoding`."""
-    parts = ("inputs", "outputs", "space", "random", "mutate", "crossover", "decode", "parameters")
-    return not isinstance(value, type) and all(hasattr(value, part) for part in parts)
 
 
 def _one_line(error: BaseException) -> str:

@@ -17,6 +17,14 @@ class TracingError(GpsynthError):
     """A Python function that cannot become a program; the text names the line."""
 
 
+class FormulaError(GpsynthError):
+    """A formula given as text, function or program that cannot be used as one."""
+
+
+class UnitError(GpsynthError):
+    """A unit that cannot be read, or units that do not fit together."""
+
+
 class PlantError(GpsynthError):
     """A plant whose states, controls, limits or derivatives do not fit together."""
 
@@ -47,3 +55,7 @@ class ScenarioError(GpsynthError):
 
 class FileError(GpsynthError):
     """A file that is missing, unreadable, too large or not of the expected format."""
+
+
+class MissingPackageError(GpsynthError):
+    """A package that a feature needs and that is not installed; the text says how to install it."""

@@ -1,7 +1,7 @@
 """Costs of many candidates at once: laws, parameter vectors and schedules, each from every start of a problem."""
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -11,8 +11,8 @@ import numpy.typing as npt
 from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
-from gpsynth.kernels.layout import Clock, Lanes, World, sealed
-from gpsynth.kernels.pack import Frame, Instructions, Loop, frame, pack
+from gpsynth.kernels.layout import Clock, Conditions, Lanes, World, sealed
+from gpsynth.kernels.pack import Extent, Frame, Instructions, Loop, frame, pack
 from gpsynth.kernels.tableaus import TABLEAUS
 from gpsynth.law import Law
 from gpsynth.plant import Plant
@@ -21,6 +21,16 @@ from gpsynth.program import Program
 
 MOST_PERIODS = 10_000_000  # of one rollout
 _NO_TRACE = np.empty((0, 0, 0))
+
+
+@dataclass(frozen=True)
+class Paths:
+    """What N candidates passed through from S starts, in K control periods at most; NaN after the end of a rollout."""
+
+    t: Floats  # (K + 1,) s
+    x: Floats  # (N, S, K + 1, n)
+    u: Floats  # (N, S, K + 1, m) computed at each tick; the last one would be applied next
+    target: Floats  # (N, S, K + 1, n)
 
 
 @dataclass(frozen=True)
@@ -36,6 +46,7 @@ class Rollouts:
     diverged: Floats  # (N, S) 1.0 where the rollout diverged
     terminal: Floats  # (N, S, q)
     final: Floats  # (N, S, n)
+    paths: Paths | None = None  # where they were asked for
 
 
 class _Plans(NamedTuple):
@@ -68,8 +79,15 @@ class Evaluator:
         if not 0.0 <= self.margin < np.inf:
             raise ProblemError(f"the margin must be finite and at least 0 m, got {self.margin}")
 
-    def of_program(self, program: Program, parameters: Floats) -> Rollouts:
-        """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p)."""
+    def of_program(
+        self, program: Program, parameters: Floats, *, bound: float = np.inf, paths: bool = False
+    ) -> Rollouts:
+        """Rollouts (N, S) of one law, features -> raw controls, under N parameter vectors (N, p).
+
+        A single vector that costs more than `bound` in the mean over the starts need not be rolled out to the end: it
+        ends early where costs cannot be negative, and costs infinity. With `paths` everything the rollouts pass through
+        is kept.
+        """
         problem = self.problem
         if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
             raise ProblemError(
@@ -81,7 +99,10 @@ class Evaluator:
             raise ProblemError(
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
-        return self._roll(program, vectors, _NO_PLAN, problem.horizon, len(vectors))
+        bounded = len(vectors) == 1 and problem.costs_nonnegative
+        total = bound * len(problem.starts) if bounded else np.inf
+        clock = self.until(problem.horizon, bound=total)
+        return self._roll(program, vectors, _NO_PLAN, clock, len(vectors), paths=paths)
 
     def of_schedules(
         self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None, *, reach: float = 0.0
@@ -95,7 +116,8 @@ class Evaluator:
         check_law(self.problem, law)
         plans = self._plans(points, dwell, reach)
         horizon = self.problem.horizon if horizon is None else horizon
-        return self._roll(law.program, law.parameters[np.newaxis], plans, horizon, len(plans.points))
+        clock = self.until(horizon, reach=reach)
+        return self._roll(law.program, law.parameters[np.newaxis], plans, clock, len(plans.points))
 
     def _plans(self, points: Floats, dwell: Floats, reach: float) -> _Plans:
         places, times = numbers("points", points), numbers("dwell times", dwell)
@@ -114,7 +136,14 @@ class Evaluator:
         return _Plans(places, np.cumsum(times, axis=1), reach)
 
     def _roll(
-        self, program: Program, vectors: Floats, plans: _Plans, horizon: float, candidates: int
+        self,
+        program: Program,
+        vectors: Floats,
+        plans: _Plans,
+        clock: Clock,
+        candidates: int,
+        *,
+        paths: bool = False,
     ) -> Rollouts:
         """One candidate a parameter vector, or a plan."""
         starts = len(self.problem.starts)
@@ -130,8 +159,25 @@ class Evaluator:
             points=np.ascontiguousarray(plans.points, dtype=np.float64),
             ends=np.ascontiguousarray(plans.ends, dtype=np.float64),
         )
-        result = roll(self, program, sealed(lanes), horizon, _NO_TRACE, plans.reach)
-        return _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
+        trace = self._trace(len(lane), clock.periods) if paths else _NO_TRACE
+        result = roll(self, program, sealed(lanes), clock, trace)
+        rollouts = _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
+        return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
+
+    def _trace(self, lanes: int, periods: int) -> Floats:
+        """Room for states, controls and targets at each tick."""
+        width = 2 * self.problem.starts.shape[1] + len(self.problem.plant.controls)
+        return np.full((lanes, periods + 1, width), np.nan)
+
+    def _paths(self, trace: Floats, candidates: int) -> Paths:
+        table = trace.reshape(candidates, -1, *trace.shape[1:])
+        states = self.problem.starts.shape[1]
+        return Paths(
+            t=self.problem.period * np.arange(trace.shape[1], dtype=np.float64),
+            x=table[..., :states],
+            u=table[..., states:-states],
+            target=table[..., -states:],
+        )
 
     @cached_property
     def world(self) -> World:
@@ -150,13 +196,35 @@ class Evaluator:
     @cached_property
     def frame(self) -> Frame:
         """The closed loop but for the law: what does not change from candidate to candidate."""
-        problem = self.problem
-        parts = (problem.features, problem.plant.saturation, problem.rates, problem.arrival)
+        problem, given = self.problem, self.conditions
+        noisy, late = len(given.noise) > 0, given.slots > 0
+        features = problem.measured if noisy else problem.features
+        parts = (features, problem.plant.saturation, problem.rates, problem.arrival)
         names = problem.plant.state_names
-        angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
-        return frame(
-            Loop(*map(instructions, parts)), states=len(names), stages=self.clock.b.size, angles=angles
+        extent = Extent(
+            states=len(names),
+            plant=given.parameters.shape[1],
+            noise=noisy,
+            acting=len(given.rest) if late else 0,
+            slots=given.slots,
         )
+        angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
+        return frame(Loop(*map(instructions, parts)), extent, angles)
+
+    @cached_property
+    def conditions(self) -> Conditions:
+        """The problem's draws as the kernels want them."""
+        problem, draws = self.problem, self.problem.draws
+        rest = np.clip(np.zeros(len(problem.plant.controls)), problem.plant.lower, problem.plant.upper)
+        nothing = np.empty(0, dtype=np.int32)
+        if draws is None:
+            return sealed(
+                Conditions(problem.plant_parameters, nothing, 0, rest, np.empty((0, 0, 0)), nothing)
+            )
+        delays = np.rint(draws.delay / problem.step).astype(np.int32)
+        substeps, longest = self.clock.substeps, int(delays.max(initial=0))
+        slots = -(-longest // substeps) + 1 if longest else 0
+        return sealed(Conditions(problem.plant_parameters, delays, slots, rest, draws.noise, draws.tables))
 
     @cached_property
     def clock(self) -> Clock:
@@ -164,7 +232,13 @@ class Evaluator:
         problem, tableau = self.problem, TABLEAUS[self.problem.method]
         substeps = round(problem.period / problem.step)
         flags = (problem.hold, problem.stop)
-        return Clock(tableau.a, tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0)
+        return Clock(tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0, np.inf)
+
+    def until(self, horizon: float, *, reach: float = 0.0, bound: float = np.inf) -> Clock:
+        """The time grid up to the horizon (s); raises ProblemError unless that, and the reach, are sensible numbers."""
+        if not reach >= 0.0:
+            raise ProblemError(f"the reach must be at least 0, got {reach}")
+        return self.clock._replace(periods=periods_of(self.problem, horizon), reach=reach, bound=bound)
 
     @cached_property
     def goals(self) -> Floats:
@@ -172,20 +246,18 @@ class Evaluator:
         return frozen(np.broadcast_to(self.problem.goal, self.problem.starts.shape))
 
 
-def roll(
-    evaluator: Evaluator, program: Program, lanes: Lanes, horizon: float, trace: Floats, reach: float = 0.0
-) -> Floats:
+def roll(evaluator: Evaluator, program: Program, lanes: Lanes, clock: Clock, trace: Floats) -> Floats:
     """The kernel's result (L, ...) for these lanes, computed in slices of whole blocks by the evaluator's threads."""
-    if not reach >= 0.0:
-        raise ProblemError(f"the reach must be at least 0, got {reach}")
     rows, code = pack(evaluator.frame, instructions(program), len(program.parameters))
-    clock = evaluator.clock._replace(periods=periods_of(evaluator.problem, horizon), reach=reach)
     total, block = len(lanes.picks), evaluator.block
     states, terminals = lanes.starts.shape[1], len(code.arrival) - 1
     result = np.empty((total, rollout.TERMINAL + terminals + states))
 
     def run(first: int, last: int) -> None:
-        rollout.roll(rows, code, lanes, clock, evaluator.world, block, first, last, result, trace)
+        rollout.roll(
+            *(rows, code, lanes, evaluator.conditions, clock, evaluator.world),
+            *(block, first, last, result, trace),
+        )
 
     slice_size = block * max(1, -(-total // (block * evaluator.threads)))
     slices = [(first, min(first + slice_size, total)) for first in range(0, total, slice_size)]

@@ -1,4 +1,7 @@
-"""Law: a feedback u = g(x, x*) that is complete: features, formula, numbers and the plant's limits."""
+"""Law: a feedback u = g(x, x*) that is complete: features, formula, numbers and the plant's limits.
+
+Its `to_...` and `plot` hand it to the modules of the same names, which load when they are called.
+"""
 
 import hashlib
 import json
@@ -6,7 +9,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +21,10 @@ from gpsynth.errors import FileError, GpsynthError, LawError
 from gpsynth.files import read_json, write_json
 from gpsynth.plant import Plant
 from gpsynth.program import Program
+
+if TYPE_CHECKING:
+    from gpsynth.export import SympyForm
+    from gpsynth.plotting import Axes
 
 FORMAT = "gpsynth-law/1"
 
@@ -91,6 +98,51 @@ class Law:
     def formulas(self) -> tuple[str, ...]:
         """Readable lines: intermediate values, then one line for each control, in terms of the features."""
         return formula.lines(self.bounded)
+
+    def to_sympy(self, *, expanded: bool = False) -> "SympyForm":
+        """States and targets to saturated controls as sympy expressions (`gpsynth.export.to_sympy`)."""
+        from gpsynth import export
+
+        return export.to_sympy(self, expanded=expanded)
+
+    def to_latex(self) -> str:
+        """An align* environment (`gpsynth.export.to_latex`)."""
+        from gpsynth import export
+
+        return export.to_latex(self)
+
+    def to_c(self, name: str = "law") -> tuple[str, str]:
+        """C99 source and header that compute the same bits (`gpsynth.export.to_c`)."""
+        from gpsynth import export
+
+        return export.to_c(self, name)
+
+    def to_python(self, name: str = "law") -> str:
+        """A module of plain Python that computes the same bits (`gpsynth.export.to_python`)."""
+        from gpsynth import export
+
+        return export.to_python(self, name)
+
+    def to_casadi(self, name: str = "law") -> Any:
+        """A casadi.Function (state, target) -> control (`gpsynth.export.to_casadi`)."""
+        from gpsynth import export
+
+        return export.to_casadi(self, name)
+
+    def to_control(self) -> Any:
+        """Plant and law as one nonlinear system of python-control (`gpsynth.export.to_control`)."""
+        from gpsynth import export
+
+        return export.to_control(self)
+
+    def plot(
+        self, feature: str, span: tuple[float, float] = (-1.0, 1.0), *, ax: "Axes | None" = None
+    ) -> "Axes":
+        """The saturated controls over one feature, the others being 0 (`gpsynth.plotting.plot_response`)."""
+        from gpsynth.plotting import plot_response
+
+        units = {name: unit for name, (unit, _, _) in self.plant.controls.items()}
+        return plot_response(self.bounded, feature, span, units=units, ax=ax)
 
     def with_limits(self, lower: Sequence[float] | Floats, upper: Sequence[float] | Floats) -> "Law":
         """The same law for the plant with other limits of its controls, (m,) each."""

@@ -1,10 +1,9 @@
-"""Plant: named states and controls, the limits of the controls, and the dynamics as a Program."""
+"""Plant: named states and controls, the limits of the controls, uncertain parameters, the dynamics as a Program."""
 
-import keyword
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -12,34 +11,27 @@ import numpy as np
 from gpsynth.arrays import Floats, frozen
 from gpsynth.builder import Builder
 from gpsynth.errors import PlantError
-from gpsynth.program import NAME, Program
+from gpsynth.plant_parts import TIME, check_angles, check_names, control, parameter
+from gpsynth.program import Program
 from gpsynth.tracing import takes_time, trace
 
 FORMAT = "gpsynth-plant/1"
-TIME = "t"
-
-_C_KEYWORDS = frozenset(
-    {
-        *("auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum"),
-        *("extern", "float", "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return"),
-        *("short", "signed", "sizeof", "static", "struct", "switch", "typedef", "union", "unsigned", "void"),
-        *("volatile", "while"),
-    }
-)
-_TAKEN = frozenset({TIME, "running", "measure"})  # names of other inputs and outputs of a problem's programs
+_NONE: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True, eq=False, init=False)
 class Plant:
-    """A system x' = f(x, u, t) with saturated controls.
+    """A system x' = f(x, u, p, t) with saturated controls and parameters p that are known within limits.
 
-    `dynamics` is a function f(x, u) or f(x, u, t) that returns one derivative for each state in order, or a Program.
-    Raises PlantError if the parts do not fit together, TracingError if the function cannot become a Program.
+    `dynamics` is a function f(x, u) or f(x, u, t), with parameters f(x, u, p) or f(x, u, p, t), that returns one
+    derivative for each state in order, or a Program. Raises PlantError if the parts do not fit together, TracingError
+    if the function cannot become a Program.
     """
 
-    dynamics: Program  # inputs: states, controls, t; outputs: the derivatives, named like the states
+    dynamics: Program  # inputs: states, controls, t; parameters: the plant's; outputs: the derivatives of the states
     states: Mapping[str, str]  # name -> unit
     controls: Mapping[str, tuple[str, float, float]]  # name -> unit, lower and upper limit
+    parameters: Mapping[str, tuple[str, float, float, float]]  # name -> unit, lower, upper, nominal value
     angles: tuple[str, ...]  # states that are kept in [-pi, pi)
     name: str
 
@@ -49,12 +41,17 @@ class Plant:
         states: Mapping[str, str],
         controls: Mapping[str, tuple[str, float, float]],
         *,
+        parameters: Mapping[str, tuple[str, float, float] | tuple[str, float, float, float]] = _NONE,
         angles: Sequence[str] = (),
         name: str = "plant",
     ) -> None:
-        _check_names(name, states, controls, angles)
+        """A parameter is (unit, lower, upper, nominal); left out, its nominal value is the middle."""
+        check_names(name, states, controls, parameters)
+        check_angles(name, states, angles)
         object.__setattr__(self, "states", dict(states))
-        object.__setattr__(self, "controls", {key: _control(name, key, controls[key]) for key in controls})
+        object.__setattr__(self, "controls", {key: control(name, key, controls[key]) for key in controls})
+        uncertain = {key: parameter(name, key, parameters[key]) for key in parameters}
+        object.__setattr__(self, "parameters", uncertain)
         object.__setattr__(self, "angles", tuple(angles))
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "dynamics", _dynamics(self, dynamics))
@@ -68,6 +65,16 @@ class Plant:
     def control_names(self) -> tuple[str, ...]:
         """Names of the m controls."""
         return tuple(self.controls)
+
+    @property
+    def parameter_names(self) -> tuple[str, ...]:
+        """Names of the q parameters."""
+        return tuple(self.parameters)
+
+    @cached_property
+    def nominal(self) -> Floats:
+        """Nominal values of the parameters, (q,)."""
+        return frozen(np.array([value for *_, value in self.parameters.values()], dtype=np.float64))
 
     @cached_property
     def lower(self) -> Floats:
@@ -108,7 +115,11 @@ class Plant:
         return hash(self.dynamics)
 
     def to_dict(self) -> dict[str, Any]:
-        """A JSON-ready description; limits are hexadecimal, the order of states and controls is kept."""
+        """A JSON-ready description; limits are hexadecimal, orders are kept; no parameters, no field for them."""
+        parameters = [
+            [key, unit, *(number.hex() for number in numbers)]
+            for key, (unit, *numbers) in self.parameters.items()
+        ]
         return {
             "format": FORMAT,
             "name": self.name,
@@ -116,6 +127,7 @@ class Plant:
             "controls": [
                 [key, unit, low.hex(), high.hex()] for key, (unit, low, high) in self.controls.items()
             ],
+            **({"parameters": parameters} if parameters else {}),
             "angles": list(self.angles),
             "dynamics": self.dynamics.to_dict(),
         }
@@ -126,7 +138,7 @@ class Plant:
         if not isinstance(document, dict) or document.get("format") != FORMAT:
             raise PlantError(f"a plant document has format {FORMAT!r}")
         expected = {"format", "name", "states", "controls", "angles", "dynamics"}
-        if set(document) != expected:
+        if set(document) not in (expected, expected | {"parameters"}):
             raise PlantError(
                 f"a plant document has the fields {sorted(expected)}, not {sorted(map(str, document))}"
             )
@@ -134,74 +146,29 @@ class Plant:
             key: (unit, _number(low), _number(high))
             for key, unit, low, high in _rows(document, "controls", 4)
         }
+        parameters = {
+            key: (unit, _number(low), _number(high), _number(nominal))
+            for key, unit, low, high, nominal in _rows({"parameters": [], **document}, "parameters", 5)
+        }
         if not isinstance(document["angles"], list):
             raise PlantError("the angles of a plant document are a list of names")
         return cls(
             Program.from_dict(document["dynamics"]),
             states=dict(_rows(document, "states", 2)),
             controls=controls,
+            parameters=parameters,
             angles=document["angles"],
             name=document["name"],
         )
 
 
-def _check_names(
-    name: str, states: Mapping[str, str], controls: Mapping[str, Any], angles: Sequence[str]
-) -> None:
-    if not isinstance(name, str) or not name:
-        raise PlantError(f"the name of a plant is a text, not {name!r}")
-    for kind, group in (("states", states), ("controls", controls)):
-        if not isinstance(group, Mapping) or not group:
-            raise PlantError(
-                f"the {kind} of {name} are given as a dictionary with at least one name, got {group!r}"
-            )
-        for key in group:
-            _check_name(name, key)
-    for key, unit in states.items():
-        if not isinstance(unit, str):
-            raise PlantError(f"the unit of {key} in {name} is a text, not {unit!r}")
-    both = [key for key in states if key in controls]
-    if both:
-        raise PlantError(f"{both[0]} is both a state and a control of {name}")
-    wrong = [angle for angle in angles if not isinstance(angle, str) or angle not in states]
-    if isinstance(angles, str) or wrong or len(set(angles)) < len(angles):
-        raise PlantError(
-            f"the angles of {name} must be different states out of {', '.join(states)}, got {angles!r}"
-        )
-
-
-def _check_name(plant: str, key: Any) -> None:
-    if not isinstance(key, str) or not NAME.match(key) or key.startswith("_"):
-        raise PlantError(f"{key!r} in {plant} is not a name: a letter, then letters, digits and _")
-    if keyword.iskeyword(key) or key in _C_KEYWORDS:
-        raise PlantError(f"{key!r} in {plant} is a keyword of Python or C; use another name")
-    if key in _TAKEN or key.endswith(("_target", "_goal")):
-        raise PlantError(
-            f"{key!r} in {plant} is reserved, like {', '.join(sorted(_TAKEN))} and what ends in _target or _goal"
-        )
-
-
-def _control(plant: str, key: str, given: Any) -> tuple[str, float, float]:
-    if not isinstance(given, list | tuple) or len(given) != 3 or not isinstance(given[0], str):
-        raise PlantError(f"the control {key} of {plant} is given as (unit, lower, upper), got {given!r}")
-    numbers = given[1:]
-    if any(isinstance(number, bool) or not isinstance(number, int | float | np.number) for number in numbers):
-        raise PlantError(f"the limits of {key} in {plant} are two numbers, got {numbers!r}")
-    low, high = float(numbers[0]), float(numbers[1])
-    if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise PlantError(
-            f"the limits of {key} in {plant} are {low} and {high}; expected finite numbers, lower < upper"
-        )
-    return given[0], low, high
-
-
 def _dynamics(plant: Plant, given: Callable[..., Any] | Program) -> Program:
     program = given if isinstance(given, Program) else _traced(plant, given)
     inputs = (*plant.states, *plant.controls, TIME)
-    if program.inputs != inputs or program.parameters:
+    if program.inputs != inputs or program.parameters != plant.parameter_names:
         raise PlantError(
             f"the dynamics of {plant.name} take {', '.join(program.inputs + program.parameters)}; "
-            f"expected {', '.join(inputs)}"
+            f"expected {', '.join(inputs + plant.parameter_names)}"
         )
     if len(program.outputs) != len(plant.states):
         raise PlantError(
@@ -217,10 +184,22 @@ def _dynamics(plant: Plant, given: Callable[..., Any] | Program) -> Program:
 def _traced(plant: Plant, given: Any) -> Program:
     if not callable(given):
         raise PlantError(f"the dynamics of {plant.name} are a function or a Program, got {given!r}")
-    arguments = (("x", plant.state_names), ("u", plant.control_names))
-    if takes_time(given, 2):
-        return trace(given, (*arguments, (TIME, TIME)))
-    return trace(given, arguments, unread=(TIME,))
+    arguments = [("x", plant.state_names), ("u", plant.control_names)]
+    if plant.parameters:
+        arguments.append(("p", plant.parameter_names))
+    if takes_time(given, len(arguments)):
+        return _parametrized(plant, trace(given, (*arguments, (TIME, TIME))))
+    return _parametrized(plant, trace(given, arguments, unread=(TIME,)))
+
+
+def _parametrized(plant: Plant, traced: Program) -> Program:
+    """The same program with the plant's parameters as its parameters."""
+    if not plant.parameters:
+        return traced
+    builder = Builder((*plant.states, *plant.controls, TIME), plant.parameter_names)
+    leaves = (*builder.inputs, *builder.parameters)
+    of = dict(zip((*plant.states, *plant.controls, TIME, *plant.parameters), leaves, strict=True))
+    return builder.build(builder.inline(traced, [of[name] for name in traced.inputs]), traced.names)
 
 
 def _rows(document: dict[str, Any], field: str, size: int) -> list[list[Any]]:

@@ -1,4 +1,4 @@
-"""Trajectories, fronts and histories as pictures; matplotlib loads when the first is drawn.
+"""Trajectories, laws, fronts and histories as pictures; matplotlib loads when the first is drawn.
 
 Every function draws into the axes it is given, or into the current ones of pyplot, and returns them.
 """
@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from gpsynth.arrays import Floats
 from gpsynth.errors import GpsynthError
+from gpsynth.program import Program
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from gpsynth.simulation import Trajectory
+    from matplotlib.axes import Axes as Axes  # noqa: PLC0414 others annotate with it
 
 # Okabe & Ito 2008: told apart by people of any color vision.
 BLUE, ORANGE, GREEN, RED, SKY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#56B4E9"
@@ -58,28 +58,90 @@ class Scored(Protocol):
         ...
 
 
-def plot_trajectory(
-    trajectory: "Trajectory",
-    states: Mapping[str, str],
-    *,
-    shown: Sequence[str] = (),
-    ax: "Axes | None" = None,
-) -> "Axes":
-    """States over time, all or those `shown`, with their targets dashed; `states` are the plant's (name -> unit).
+class Timed(Protocol):
+    """Quantities over time: the first n columns are states, for which there is a target."""
 
-    Raises GpsynthError if a state to show is not one of the plant's.
+    @property
+    def t(self) -> Floats:
+        """(N + 1,) s."""
+        ...
+
+    @property
+    def x(self) -> Floats:
+        """(N + 1, n) states."""
+        ...
+
+    @property
+    def u(self) -> Floats:
+        """(N, m) controls, each held until the next."""
+        ...
+
+    @property
+    def target(self) -> Floats:
+        """(N + 1, n)."""
+        ...
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Name -> unit of the n states, then of the m controls."""
+        ...
+
+
+def plot_trajectory(trajectory: Timed, *, shown: Sequence[str] = (), ax: "Axes | None" = None) -> "Axes":
+    """States over time, their targets dashed, or those states and controls that are to be `shown`.
+
+    Raises GpsynthError if one to show is not the plant's.
     """
-    names = tuple(states)
+    names, states = tuple(trajectory.units), trajectory.x.shape[1]
     unknown = [name for name in shown if name not in names]
     if unknown:
-        raise GpsynthError(f"{unknown[0]!r} is not a state; the states are {', '.join(names)}")
+        raise GpsynthError(
+            f"{unknown[0]!r} is not a state or control; they are {', '.join(names[:states])} and "
+            f"{', '.join(names[states:])}"
+        )
     axes = _axes(ax)
-    for number, name in enumerate(shown or names):
+    for number, name in enumerate(shown or names[:states]):
         column, color = names.index(name), CYCLE[number % len(CYCLE)]
-        axes.plot(trajectory.t, trajectory.x[:, column], color=color, label=quantity(name, states[name]))
-        axes.step(trajectory.t, trajectory.target[:, column], "--", where="post", color=color, linewidth=0.8)
+        label = quantity(name, trajectory.units[name])
+        if column < states:
+            axes.plot(trajectory.t, trajectory.x[:, column], color=color, label=label)
+            axes.step(
+                trajectory.t, trajectory.target[:, column], "--", where="post", color=color, linewidth=0.8
+            )
+        else:
+            held = trajectory.u[:, column - states]
+            axes.stairs(held, trajectory.t, baseline=None, color=color, label=label)
     axes.set_xlabel("$t$ (s)")
-    axes.set_ylabel("state (target dashed)")
+    axes.set_ylabel("target dashed")
+    axes.margins(x=0.0)
+    return with_legend(axes)
+
+
+def plot_response(
+    program: Program,
+    over: str,
+    span: tuple[float, float] = (-1.0, 1.0),
+    *,
+    units: Mapping[str, str] = MappingProxyType({}),
+    ax: "Axes | None" = None,
+) -> "Axes":
+    """The outputs of a program over one of its inputs from span[0] to span[1], all other inputs being 0.
+
+    Raises GpsynthError if it has no such input; `units` (name -> unit) go into the labels.
+    """
+    if over not in program.inputs:
+        raise GpsynthError(f"{over!r} is not an input; they are {', '.join(program.inputs)}")
+    rows = np.zeros((401, len(program.inputs)))
+    rows[:, program.inputs.index(over)] = np.linspace(*span, len(rows))
+    axes = _axes(ax)
+    for name, values, color in zip(program.names, program(rows).T, CYCLE * len(program.names), strict=False):
+        axes.plot(
+            rows[:, program.inputs.index(over)],
+            values,
+            color=color,
+            label=quantity(name, units.get(name, "")),
+        )
+    axes.set_xlabel(quantity(over, units.get(over, "")))
     axes.margins(x=0.0)
     return with_legend(axes)
 
@@ -93,6 +155,17 @@ def plot_front(front: Sequence[Scored], *, ax: "Axes | None" = None) -> "Axes":
     axes.set_xlabel("complexity (instructions)")
     axes.set_ylabel("cost")
     axes.locator_params("x", integer=True)
+    return axes
+
+
+def plot_tradeoff(
+    points: Sequence[tuple[float, float]], names: tuple[str, str], *, ax: "Axes | None" = None
+) -> "Axes":
+    """One cost over another, a point a law."""
+    axes = _axes(ax)
+    axes.plot(*np.array([*points], dtype=np.float64).reshape(-1, 2).T, "o", color=BLUE, markersize=4.5)
+    axes.set_xlabel(names[0])
+    axes.set_ylabel(names[1])
     return axes
 
 

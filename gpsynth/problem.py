@@ -9,11 +9,14 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth.arrays import Floats, frozen
+from gpsynth.arrays import Floats, frozen, numbers, shaped
 from gpsynth.builder import Builder
+from gpsynth.draws import Draws, check_draws
 from gpsynth.errors import ProblemError
-from gpsynth.plant import TIME, Plant
+from gpsynth.plant import Plant
+from gpsynth.plant_parts import TIME
 from gpsynth.program import Program
+from gpsynth.signs import nonnegative
 from gpsynth.tracing import Names, input_names, takes_time, trace, wrap_angle
 
 METHODS = ("euler", "heun", "rk4")
@@ -35,9 +38,9 @@ class Obstacles:
     position: tuple[str, str] = ("x", "y")  # states
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "circles", _numbers("circles", self.circles, (-1, 5)))
-        object.__setattr__(self, "bounds", _numbers("bounds", self.bounds, (4,), finite=False))
-        object.__setattr__(self, "radius", float(_numbers("the robot's radius", self.radius, ())))
+        object.__setattr__(self, "circles", shaped("circles", self.circles, (-1, 5)))
+        object.__setattr__(self, "bounds", shaped("bounds", self.bounds, (4,), finite=False))
+        object.__setattr__(self, "radius", float(shaped("the robot's radius", self.radius, ())))
         if isinstance(self.position, list):
             object.__setattr__(self, "position", tuple(self.position))
         _check_obstacles(self)
@@ -65,6 +68,7 @@ class Problem:
     hold: bool  # the control is held over a period, else computed at every stage of a step
     stop: bool  # the rollout ends on arrival
     obstacles: Obstacles | None
+    draws: Draws | None  # the conditions of each start; None: the nominal plant, no delay, no noise
 
     def __init__(  # noqa: PLR0913 names each choice as a keyword
         self,
@@ -84,6 +88,7 @@ class Problem:
         hold: bool = True,
         stop: bool = True,
         obstacles: Obstacles | None = None,
+        draws: Draws | None = None,
     ) -> None:
         """`features(x, target)` gives a dictionary of values; by default the error of each state, angles wrapped.
 
@@ -93,14 +98,14 @@ class Problem:
         if not isinstance(plant, Plant):
             raise ProblemError(f"a problem needs a Plant, got {plant!r}")
         size = len(plant.states)
-        widths = _array("tolerance", tolerance)
-        widths = _numbers("tolerance", np.repeat(widths, size) if widths.ndim == 0 else widths, (size,))
+        widths = numbers("tolerance", tolerance)
+        widths = shaped("tolerance", np.repeat(widths, size) if widths.ndim == 0 else widths, (size,))
         to_goal, to_target = _arguments(plant, "goal"), _arguments(plant, "target")
         at_work = (to_goal[0], ("u", plant.control_names), to_goal[1], (TIME, TIME))
         values = {
             "plant": plant,
-            "starts": _numbers("starts", np.atleast_2d(_array("starts", starts)), (-1, size)),
-            "goal": _numbers("goal", goal, (size,)),
+            "starts": shaped("starts", np.atleast_2d(numbers("starts", starts)), (-1, size)),
+            "goal": shaped("goal", goal, (size,)),
             "tolerance": widths,
             "horizon": _positive("horizon", horizon),
             "period": _positive("period", period),
@@ -113,6 +118,7 @@ class Problem:
             "hold": bool(hold),
             "stop": bool(stop),
             "obstacles": obstacles,
+            "draws": draws,
         }
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -120,12 +126,46 @@ class Problem:
 
     @cached_property
     def rates(self) -> Program:
-        """Derivatives of the states and the running cost; inputs: states, controls, <state>_goal, t."""
-        builder = Builder(self.running.inputs)
+        """Derivatives of the states and the running cost; inputs: states, controls, <state>_goal, t.
+
+        Its parameters are the plant's.
+        """
+        builder = Builder(self.running.inputs, self.plant.parameter_names)
         of = dict(zip(self.running.inputs, builder.inputs, strict=True))
-        derivatives = builder.inline(self.plant.dynamics, [of[name] for name in self.plant.dynamics.inputs])
+        inputs = [of[name] for name in self.plant.dynamics.inputs]
+        derivatives = builder.inline(self.plant.dynamics, inputs, builder.parameters)
         outputs = [*derivatives, *builder.inline(self.running, builder.inputs)]
         return builder.build(outputs, (*self.plant.state_names, "running"))
+
+    @cached_property
+    def measured(self) -> Program:
+        """The features of a measured state; inputs: states, <state>_target and the errors of the states."""
+        states, targets = self.plant.state_names, self.features.inputs[len(self.plant.states) :]
+        builder = Builder((*states, *targets, *(f"_error_{name}" for name in states)))
+        given = builder.inputs
+        seen = [
+            builder.apply("add", state, error)
+            for state, error in zip(given, given[2 * len(states) :], strict=False)
+        ]
+        wrapped = [
+            builder.apply("wrap", value) if name in self.plant.angles else value
+            for name, value in zip(states, seen, strict=True)
+        ]
+        outputs = builder.inline(self.features, [*wrapped, *given[len(states) : 2 * len(states)]])
+        return builder.build(outputs, self.features.names)
+
+    @cached_property
+    def plant_parameters(self) -> Floats:
+        """The plant's parameters (S, q) at each start."""
+        if self.draws is not None and self.draws.parameters.shape[1] > 0:
+            return self.draws.parameters
+        return frozen(np.tile(self.plant.nominal, (len(self.starts), 1)))
+
+    @cached_property
+    def costs_nonnegative(self) -> bool:
+        """Whether the running cost and all terminal costs are proven to be at least 0."""
+        terminal = () if self.terminal is None else nonnegative(self.terminal)
+        return all((*nonnegative(self.running), *terminal))
 
     @cached_property
     def arrival(self) -> Program:
@@ -191,30 +231,8 @@ def _time(x: Any, u: Any, goal: Any) -> float:
     return 1.0
 
 
-def _array(name: str, values: npt.ArrayLike) -> Floats:
-    try:
-        return np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ProblemError(f"{name} must hold numbers in rows of equal length, got {values!r}") from None
-
-
-def _numbers(name: str, values: npt.ArrayLike, shape: tuple[int, ...], *, finite: bool = True) -> Floats:
-    """A read-only array of this shape, of which a -1 stands for any length."""
-    array = _array(name, values)
-    if array.size == 0 and shape[0] == -1:
-        array = array.reshape(0, *shape[1:])
-    if array.ndim != len(shape) or any(
-        want not in (-1, has) for want, has in zip(shape, array.shape, strict=True)
-    ):
-        expected = str(shape).replace("-1", "any number")
-        raise ProblemError(f"{name} has shape {array.shape}; expected {expected}")
-    if np.any(np.isnan(array)) or (finite and not np.all(np.isfinite(array))):
-        raise ProblemError(f"{name} holds NaN or infinity: {array.tolist()}")
-    return frozen(array)
-
-
 def _positive(name: str, value: Any) -> float:
-    number = float(_numbers(name, value, ()))
+    number = float(shaped(name, value, ()))
     if not number > 0.0:
         raise ProblemError(f"{name} must be positive, got {number}")
     return number
@@ -255,6 +273,10 @@ def _check(problem: Problem) -> None:
         )
     if problem.obstacles is not None:
         _check_places(problem, problem.obstacles)
+    if problem.draws is not None:
+        check_draws(
+            *(problem.draws, problem.plant, len(problem.starts)), hold=problem.hold, horizon=problem.horizon
+        )
 
 
 def _check_places(problem: Problem, obstacles: Obstacles) -> None:

@@ -46,6 +46,11 @@ class Run:
         except OSError as error:
             raise FileError(f"{path} cannot be written: {error.strerror}") from None
 
+    def rewind(self, generation: int) -> None:
+        """Drop what the log says from this generation on: a run that was killed logged more than it could keep."""
+        entries = [entry for entry in read_progress(self.folder) if entry["generation"] < generation]
+        write_text(self.folder / PROGRESS, "".join(json.dumps(entry) + "\n" for entry in entries))
+
 
 def begin(folder: str | os.PathLike[str], command: Sequence[str], *, seed: int, release: str) -> Run:
     """A run of gpsynth `release` in `folder`, made if need be, with its description and an empty progress log.

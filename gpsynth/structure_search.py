@@ -5,11 +5,11 @@ each of the best formulas found so far. Both compete by the same costs in the sa
 improvement is: a formula stays tuned only while it stays among the best.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -29,6 +29,10 @@ class Candidate(Generic[G]):
     genome: G
     program: Program
     values: Floats  # (p,)
+    bound: float = inf  # a mean cost above it counts like infinity
+
+
+Cost = Callable[[Sequence[Candidate[Any]]], Floats]  # (batch, S), one row a candidate
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +72,11 @@ class SearchState(Generic[G]):
     ] = ()  # of each new formula: number of vectors, generation of its ancestor
     generation: int = 0
 
+    def bound(self, born: int) -> float:
+        """The highest cost among those no older than `born`: who costs more does not stay for long."""
+        costs = (individual.cost for individual in self.population if individual.born >= born)
+        return max(costs, default=inf)
+
     @cached_property
     def specialists(self) -> "_Specialists":
         """The population as epsilon-lexicase selection sees it."""
@@ -92,6 +101,7 @@ class StructureSearch(Generic[G]):
     lexicase: float = 0.4  # probability that a parent is chosen by epsilon-lexicase
     crossover: float = 0.5  # probability that an offspring has two parents
     fresh: float = 0.1  # probability that an offspring is random
+    youth: float = 0.25  # share of the population that is kept for being good for its age
     patience: int = 12  # generations of tuning without improvement before another formula gets the place
     seeds: tuple[G, ...] = ()  # formulas to begin with
 
@@ -112,7 +122,8 @@ class StructureSearch(Generic[G]):
         groups, tuned = [], []
         for genome, program, born in self._new(state, rng):
             vectors = self._vectors(genome, program, rng)
-            batch += [Candidate(genome, program, values) for values in vectors]
+            bound = state.bound(born) if len(state.population) == self.population else inf
+            batch += [Candidate(genome, program, values, bound) for values in vectors]
             groups.append((len(vectors), born))
         for individual in self._to_tune(state):
             tuner = self._tuner(individual)
@@ -142,10 +153,13 @@ class StructureSearch(Generic[G]):
             improved = self._tuned(individual, waiting, candidates[asked], means[asked], costs[asked])
             known[individual.program] = improved
             first += count
-        ordered = sorted(known.values(), key=lambda individual: (individual.cost, individual.complexity))
-        distinct = _distinct(ordered)
-        survivors = _survivors(distinct, self.population)
-        return SearchState(survivors, _front((*state.front, *distinct)), generation=state.generation + 1)
+        return self._state(known.values(), state.front, state.generation + 1)
+
+    def merged(self, states: Sequence[SearchState[G]]) -> SearchState[G]:
+        """One search that goes on with the best of several, between generations."""
+        individuals = [individual for state in states for individual in state.population]
+        front = [individual for state in states for individual in state.front]
+        return self._state(individuals, front, max(state.generation for state in states))
 
     def best(self, state: SearchState[G]) -> tuple[Individual[G] | None, float]:
         """The formula of least cost."""
@@ -154,6 +168,14 @@ class StructureSearch(Generic[G]):
     def stop(self, state: SearchState[G]) -> str:
         """Formulas never run out."""
         return ""
+
+    def _state(
+        self, individuals: Iterable[Individual[G]], front: Sequence[Individual[G]], generation: int
+    ) -> SearchState[G]:
+        ordered = sorted(individuals, key=lambda individual: (individual.cost, individual.complexity))
+        distinct = _distinct(ordered)
+        survivors = _survivors(distinct, self.population, round(self.youth * self.population))
+        return SearchState(survivors, pareto((*front, *distinct)), generation=generation)
 
     def _new(self, state: SearchState[G], rng: np.random.Generator) -> list[tuple[G, Program, int]]:
         """Offspring whose programs are not in the population."""
@@ -266,13 +288,13 @@ class _Specialists:
         return int(left[int(rng.integers(len(left)))])
 
 
-def _survivors(ordered: Sequence[Individual[G]], count: int) -> tuple[Individual[G], ...]:
-    """By age and cost (Schmidt & Lipson 2011): an old formula must be better than every younger one to stay.
+def _survivors(ordered: Sequence[Individual[G]], count: int, young: int) -> tuple[Individual[G], ...]:
+    """The cheapest, and beside them `young` individuals by age and cost (Schmidt & Lipson 2011).
 
-    So new starts are not crowded out before they have had time to improve.
+    Of these an old one must be better than every younger one to stay, so that new starts are not crowded out before
+    they have had time to improve.
     """
-    left = list(ordered)
-    kept: list[Individual[G]] = []
+    kept, left = list(ordered[: count - young]), list(ordered[count - young :])
     while left and len(kept) < count:
         youngest = -1
         front: list[Individual[G]] = []
@@ -294,7 +316,7 @@ def _distinct(ordered: Sequence[Individual[G]]) -> list[Individual[G]]:
     return kept
 
 
-def _front(individuals: Sequence[Individual[G]]) -> tuple[Individual[G], ...]:
+def pareto(individuals: Sequence[Individual[G]]) -> tuple[Individual[G], ...]:
     """Those that no simpler or equally simple one undercuts, by rising complexity."""
     front: list[Individual[G]] = []
     for individual in sorted(individuals, key=lambda each: (each.complexity, each.cost)):

@@ -1,23 +1,40 @@
 """Stage 1: synthesize a stabilizer u = g(x, x*), structure and numbers together, as a front of cost and complexity."""
 
+import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from importlib.metadata import version
 from itertools import groupby
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
+from gpsynth.checkpoint import fingerprint
+from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
-from gpsynth.errors import ProblemError
+from gpsynth.epochs import Epochs
+from gpsynth.errors import OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.guesses import Guess, genomes_of
+from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
+from gpsynth.objective import PROBLEMS_OWN, Function, Objective, as_objective, score
 from gpsynth.optimizers import CMAES, Progress, minimize
+from gpsynth.plotting import plot_front
 from gpsynth.problem import Problem
 from gpsynth.program import Program
-from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch
+from gpsynth.refitting import improved, mean_cost
+from gpsynth.runs import INTERRUPTED, checkpoint_in, run_search
+from gpsynth.structure_search import Candidate, Individual, StructureSearch
+from gpsynth.tables import write_csv
+from gpsynth.variational_ga import VariationalGA
+
+if TYPE_CHECKING:
+    from gpsynth.plotting import Axes
 
 G = TypeVar("G")
 
@@ -55,6 +72,27 @@ class SynthesisResult:
         """The law of the best entry."""
         return self.best.law
 
+    def rows(self) -> list[dict[str, Any]]:
+        """The front as one dictionary a law, ready for pandas.DataFrame; formulas are joined by '; '."""
+        return [
+            {
+                "complexity": entry.complexity,
+                "cost": entry.cost,
+                "reached": entry.reached,
+                "median_time": entry.median_time,
+                "formulas": "; ".join(entry.law.formulas()),
+            }
+            for entry in self.front
+        ]
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write `rows` as a CSV file with a header; raises FileError if that is not possible."""
+        write_csv(path, ("complexity", "cost", "reached", "median_time", "formulas"), self.rows())
+
+    def plot(self, *, ax: "Axes | None" = None) -> "Axes":
+        """Cost over complexity (`gpsynth.plotting.plot_front`)."""
+        return plot_front(self.front, ax=ax)
+
     def table(self) -> str:
         """The front as text: complexity, cost, share of starts reached, median time, formulas."""
         lines = [f"{'size':>4} {'cost':>10} {'reached':>8} {'median s':>9}  law"]
@@ -71,37 +109,90 @@ def synthesize(
     seed: int = 0,
     budget: int = 20_000,
     tuning: int = 2_000,
-    search: StructureSearch[G] | None = None,
+    search: StructureSearch[G] | Epochs[G] | VariationalGA | None = None,
+    guesses: Sequence[Guess] = (),
+    objective: Objective | Function | None = None,
     rough: Problem | None = None,
     trials: Sequence[Problem] = (),
+    islands: Islands | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    resume: bool = False,
     threads: int = 2,
     progress: bool = False,
-    callback: Callable[[Progress[SearchState[G]]], bool | None] | None = None,
+    callback: Callable[[Progress[Any]], bool | None] | None = None,
 ) -> SynthesisResult:
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
     An evaluation is one parameter vector of one formula rolled out from all starts. The search may use a `rough`
     problem (fewer starts, longer steps); every law of the front is tuned on `problem` itself, with at most `tuning`
     evaluations. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps,
-    another plant), which no search has seen, so that a law that only fits its training loses. The same seed gives
-    the same result for any number of threads. Raises ProblemError if the encoding's inputs and outputs are not the
-    problem's features and controls.
+    another plant), which no search has seen, so that a law that only fits its training loses.
+
+    The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. An `objective`, a
+    function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With a `folder`
+    the search leaves checkpoints there, and with `resume` it goes on from the last one; Ctrl-C ends it early, with what
+    was found so far. The same seed gives the same result for any number of threads and after any resume. `search` is
+    of this encoding; `islands` merge, so they take a StructureSearch only.
+
+    Raises ProblemError if the encoding's inputs and outputs are not the problem's features and controls, EncodingError
+    or FormulaError if a guess is no formula of the encoding, FileError if the folder's checkpoint is of another run.
     """
     check_encoding(problem, encoding)
-    cost = batch_cost(Evaluator(rough or problem), threads)
-    strategy = search or StructureSearch(encoding)
-    found = minimize(
-        cost, strategy, seed=seed, budget=budget, path=(SEARCH,), progress=progress, callback=callback
+    wanted = as_objective(objective)
+    strategy: Any = search or StructureSearch(encoding)
+    if islands is not None and not isinstance(strategy, StructureSearch):
+        raise OptimizerError(
+            f"islands merge, which a {type(strategy).__name__} cannot; use a StructureSearch, or no islands"
+        )
+    strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
+    cost = BatchCost(rough or problem, threads if islands is None else 1, wanted)
+    found, reason = run_search(
+        cost,
+        strategy,
+        None
+        if folder is None
+        else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, islands, seed)),
+        run=minimize if islands is None else partial(search_islands, islands=islands, workers=threads),
+        resume=resume,
+        seed=seed,
+        budget=budget,
+        path=(SEARCH,),
+        progress=progress,
+        callback=callback,
     )
+    tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
-        program, values = _tuned(evaluators[0], encoding, *numbered, seed=seed, budget=tuning)
-        return _entry(evaluators, program, values)
+        number, individual = numbered
+        values = _tuned(
+            evaluators[0], encoding.space, individual, wanted, seed=seed, budget=tuning, path=(TUNING, number)
+        )
+        return _entry(evaluators, individual.program, values, wanted)
 
     with ThreadPoolExecutor(threads) as pool:
         entries = list(pool.map(entry, enumerate(found.state.front)))
-    return SynthesisResult(_front(entries), found.evaluations, found.history, found.reason)
+    return SynthesisResult(_front(entries), found.evaluations, found.history, reason)
+
+
+def _identity(
+    problem: Problem,
+    rough: Problem | None,
+    search: Any,
+    objective: Objective,
+    islands: Islands | None,
+    seed: int,
+) -> dict[str, str]:
+    """What two runs must have in common for one to go on where the other stopped."""
+    parts = {
+        "problem": problem,
+        "rough problem": rough,
+        "search": search,
+        "objective": objective,
+        "number of islands": islands,
+    }
+    hashes = {name: fingerprint(part) for name, part in parts.items()}
+    return {**hashes, "seed": str(seed), "release": version("gpsynth")}
 
 
 def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:
@@ -114,62 +205,67 @@ def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:
         )
 
 
-def costs_of(rollouts: Rollouts) -> Floats:
-    """Running cost and terminal costs from each start, (N, S); +inf where a rollout diverged."""
-    total: Floats = rollouts.cost + rollouts.terminal.sum(axis=-1)
-    return np.where(np.isfinite(total), total, np.inf)
-
-
-def batch_cost(evaluator: Evaluator, threads: int) -> Callable[[Sequence[Candidate[Any]]], Floats]:
+@dataclass(frozen=True, eq=False)
+class BatchCost:
     """The cost function of a structure search: candidates with one program go to the kernel together."""
 
-    def cost(batch: Sequence[Candidate[Any]]) -> Floats:
+    problem: Problem
+    threads: int = 1
+    objective: Objective = PROBLEMS_OWN
+
+    def __call__(self, batch: Sequence[Candidate[Any]]) -> Floats:
+        """Costs (N, S) of N candidates."""
         groups = [list(group) for _, group in groupby(batch, key=lambda candidate: id(candidate.program))]
 
         def of_group(group: list[Candidate[Any]]) -> Floats:
             values = np.array([candidate.values for candidate in group]).reshape(len(group), -1)
-            return costs_of(evaluator.of_program(group[0].program, values))
+            bound = max(candidate.bound for candidate in group)
+            return score(self.evaluator, group[0].program, values, self.objective, bound)
 
-        with ThreadPoolExecutor(threads) as pool:
+        with ThreadPoolExecutor(self.threads) as pool:
             return np.concatenate(list(pool.map(of_group, groups)))
 
-    return cost
+    def __reduce__(self) -> tuple[type["BatchCost"], tuple[Problem, int, Objective]]:
+        return BatchCost, (self.problem, self.threads, self.objective)
+
+    @cached_property
+    def evaluator(self) -> Evaluator:
+        """One of each process: what it caches would not survive the way to another."""
+        return Evaluator(self.problem)
 
 
 def _tuned(
     evaluator: Evaluator,
-    encoding: Encoding[G],
-    number: int,
-    individual: Individual[G],
+    space: ParameterSpace,
+    individual: Individual[Any],
+    objective: Objective,
     *,
     seed: int,
     budget: int,
-) -> tuple[Program, Floats]:
-    """The formula of a front member with its numbers tuned on the evaluator's problem."""
-    program, values = individual.program, individual.values
+    path: tuple[int, ...],
+) -> Floats:
+    """The numbers of a front member, tuned on the evaluator's problem."""
+    values = individual.values
     if len(values) == 0 or budget < 1:
-        return program, values
-    space = encoding.space
+        return values
     lower, upper = np.full(len(values), space.lower), np.full(len(values), space.upper)
     optimizer = CMAES(lower, upper, x0=values, sigma=0.02, restarts=0)
-
-    def cost(vectors: Floats) -> Floats:
-        means: Floats = costs_of(evaluator.of_program(program, vectors)).mean(axis=1)
-        return means
-
-    found = minimize(cost, optimizer, seed=seed, budget=budget, path=(TUNING, number))
-    before = float(cost(values[np.newaxis])[0])
-    return (program, found.x) if found.cost < before else (program, values)
+    cost = mean_cost(evaluator, individual.program, objective)
+    return improved(cost, values, optimizer, seed=seed, budget=budget, path=path)
 
 
-def _entry(evaluators: Sequence[Evaluator], program: Program, values: Floats) -> FrontEntry:
+def _entry(
+    evaluators: Sequence[Evaluator], program: Program, values: Floats, objective: Objective
+) -> FrontEntry:
     problem = evaluators[0].problem
-    rollouts = [evaluator.of_program(program, values[np.newaxis]) for evaluator in evaluators]
+    rollouts = [
+        evaluator.of_program(program, values[np.newaxis], paths=objective.paths) for evaluator in evaluators
+    ]
     arrival = np.concatenate([each.arrival[0] for each in rollouts])
     reached = np.concatenate([_there(*pair) for pair in zip(evaluators, rollouts, strict=True)])
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
-        cost=float(np.concatenate([costs_of(each)[0] for each in rollouts]).mean()),
+        cost=float(np.concatenate([objective(each)[0] for each in rollouts]).mean()),
         complexity=program.complexity,
         reached=float(reached.mean()),
         median_time=float(np.median(arrival[reached])) if reached.any() else float("inf"),

@@ -147,6 +147,18 @@ def test_one_format_is_the_same_alone_as_among_all(law_file, tmp_path, chosen, n
         assert (alone / name).read_bytes() == (together / name).read_bytes()
 
 
+def test_assess_prints_the_report(capsys, law_file, plant_file):
+    assert main(["assess", str(law_file), str(plant_file()), "--threads", "1"]) == 0
+    assert capsys.readouterr().out.count(" 2 of 2") == 4
+
+
+def test_a_law_for_another_problem_is_one_sentence(capsys, law_file, plant_file):
+    other = (
+        "from dataclasses import replace\nproblem = replace(problem, features=lambda x, target: {'a': x.x})"
+    )
+    _fails(capsys, ["assess", law_file, plant_file(after=other)], "expected 1 from the features a")
+
+
 def test_info_says_what_a_law_is(capsys, law_file):
     assert main(["info", str(law_file)]) == 0
     text = capsys.readouterr().out
@@ -190,7 +202,7 @@ def test_a_name_that_c_does_not_allow_is_one_sentence(capsys, law_file, tmp_path
     assert not (tmp_path / "out").exists()
 
 
-def test_ctrl_c_is_130_and_keeps_the_best_law_so_far(capsys, monkeypatch, plant_file, tmp_path):
+def test_ctrl_c_is_130_and_the_run_can_be_resumed(capsys, monkeypatch, plant_file, tmp_path):
     from gpsynth.record import Run
 
     log = Run.log
@@ -202,10 +214,41 @@ def test_ctrl_c_is_130_and_keeps_the_best_law_so_far(capsys, monkeypatch, plant_
 
     monkeypatch.setattr(Run, "log", interrupted)
     out = tmp_path / "run"
-    assert main(["synthesize", str(plant_file()), "--out", str(out), "--budget", "5000"]) == 130
+    assert main(["synthesize", str(plant_file()), "--out", str(out), "--budget", "1500"]) == 130
     assert capsys.readouterr().err.strip() == "interrupted"
     assert len(read_progress(out)) == 4
-    assert Law.load(out / "law.json").plant.name == "plant"
+    front = json.loads((out / "front.json").read_text())["laws"]
+    assert Law.from_dict(front[-1]["law"]) == Law.load(out / "law.json")
+    monkeypatch.setattr(Run, "log", log)
+    assert main(["resume", str(out)]) == 0
+    assert [entry["generation"] for entry in read_progress(out)] == list(
+        range(1, len(read_progress(out)) + 1)
+    )
+    assert main(["synthesize", str(plant_file()), "--out", str(tmp_path / "whole"), "--budget", "1500"]) == 0
+    for name in ("law.json", "front.json"):
+        assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda run: (run / "synthesis.json").unlink(), "synthesis.json does not exist"),
+        (lambda run: (run / "synthesis.json").write_text("{}"), "is no task of format"),
+        (lambda run: (run / "checkpoint.json").unlink(), "checkpoint.json does not exist"),
+        (
+            lambda run: (run.parent / "double_integrator.py").write_text(
+                PLANT.format(dynamics="lambda x, u: (x.v, u.u)", limits="-2.0, 1.0")
+            ),
+            "it is of a run with another problem",
+        ),
+    ],
+)
+def test_a_run_that_cannot_be_resumed_is_one_sentence(capsys, plant_file, tmp_path, change, sentence):
+    out = tmp_path / "run"
+    assert main(["synthesize", str(plant_file()), "--out", str(out), "--budget", "450"]) == 0
+    capsys.readouterr()
+    change(out)
+    _fails(capsys, ["resume", out], sentence)
 
 
 @pytest.mark.parametrize("command", [[], *([name] for name in cli.commands)])

@@ -6,9 +6,12 @@ import shlex
 import shutil
 import subprocess
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 
+import matplotlib as mpl
 import pytest
+from matplotlib import pyplot
 
 from applications.rosbot.__main__ import cli as rosbot
 from docs.generate import architecture_page, operations_page
@@ -73,6 +76,34 @@ def test_the_examples_of_regression_run_as_printed():
     place: dict[str, object] = {}
     for block in blocks("regression.md", "python"):
         exec(compile(block, "regression.md", "exec"), place)
+
+
+def test_robustness_runs_as_printed(capsys):
+    place: dict[str, object] = {}
+    for block in blocks("robustness.md", "python"):
+        exec(compile(block, "robustness.md", "exec"), place)
+    assert len(place["problem"].starts) == 500
+    assert blocks("robustness.md", "text") == [capsys.readouterr().out]
+
+
+def test_a_published_matrix_is_varied_as_printed():
+    place: dict[str, object] = {}
+    for block in blocks("encodings.md", "python"):
+        exec(compile(block, "encodings.md", "exec"), place)
+
+
+@pytest.mark.slow
+def test_the_guide_runs_as_printed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mpl.use("agg")
+    place: dict[str, object] = {}
+    missing = [package for package in ("casadi", "control") if find_spec(package) is None]
+    for block in blocks("guide.md", "python"):
+        if not any(f"to_{package}(" in block for package in missing):
+            exec(compile(block, "guide.md", "exec"), place)
+    pyplot.close("all")
+    if missing:
+        pytest.skip(f"without {' and '.join(missing)} the blocks that need it were not run")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

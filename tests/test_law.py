@@ -1,12 +1,15 @@
 import contextlib
 import json
 import math
+import sys
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
+from gpsynth import export
 from gpsynth.builder import Builder
-from gpsynth.errors import FileError, GpsynthError, LawError
+from gpsynth.errors import FileError, GpsynthError, LawError, MissingPackageError
 from gpsynth.law import Law
 from gpsynth.plant import Plant
 from gpsynth.program import Program
@@ -233,3 +236,26 @@ def test_hostile_document_raises_nothing_but_our_errors():
         with contextlib.suppress(GpsynthError):
             changed = Law.from_dict(_changed(document, tuple(path), values[rng.integers(len(values))]))
             assert changed == robot_law(), f"a change at {path} was not noticed"
+
+
+def test_each_export_is_a_method_too():
+    law = robot_law()
+    assert law.to_latex() == export.to_latex(law)
+    assert law.to_c("steer") == export.to_c(law, "steer")
+    assert law.to_python("steer") == export.to_python(law, "steer")
+    assert law.to_sympy(expanded=True) == export.to_sympy(law, expanded=True)
+
+
+@pytest.mark.parametrize(("method", "package"), [("to_casadi", "casadi"), ("to_control", "control")])
+def test_a_package_that_is_not_installed_is_named(monkeypatch, method, package):
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.delitem(sys.modules, f"gpsynth.export.{package}_form", raising=False)
+    with pytest.raises(MissingPackageError, match=rf"pip install gpsynth\[{package}\]"):
+        getattr(robot_law(), method)()
+
+
+def test_a_law_draws_its_controls_over_a_feature():
+    law, axes = robot_law(), Figure().add_subplot()
+    law.plot("ahead", (-2.0, 2.0), ax=axes)
+    assert axes.get_legend_handles_labels()[1] == ["$v$ (m/s)", r"$\omega$ (rad/s)"]
+    assert np.abs([line.get_ydata() for line in axes.lines]).max() == 0.5

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.law import Law
@@ -61,6 +62,18 @@ def test_the_plan_is_what_its_schedule_does(setting):
     again = simulate(*setting, schedule=found.schedule)
     assert np.array_equal(again.u, found.trajectory.u)
     assert again.clearance == found.clearance
+
+
+def test_a_plan_holds_under_the_draw_it_was_made_for(setting):
+    problem, law = setting
+    late = replace(problem, draws=Draws(delay=[0.1], noise=np.full((1, 1, 2), 0.01)))
+    found = plan(late, law, SMALL, seed=1)
+    assert found.is_free
+    assert found.arrival_time == found.trajectory.arrival  # in whole periods
+    again = simulate(late, law, schedule=found.schedule)
+    assert np.array_equal(again.x, found.trajectory.x)
+    assert not np.any(again.x[:3])  # nothing moves before the first command arrives
+    assert np.all(again.x[3])
 
 
 def test_the_same_seed_gives_the_same_plan_for_any_number_of_threads(setting):

@@ -9,11 +9,13 @@ import pytest
 from matplotlib.figure import Figure
 
 from gpsynth.errors import GpsynthError
-from gpsynth.plotting import plot_front, plot_history, plot_trajectory, quantity
+from gpsynth.plant import Plant
+from gpsynth.plotting import plot_front, plot_history, plot_response, plot_trajectory, quantity
 from gpsynth.simulation import Trajectory
 from gpsynth.synthesis import FrontEntry
+from gpsynth.tracing import trace
 
-STATES = {"x": "m", "theta": "rad"}
+PLANT = Plant(lambda x, u: (u.v, 0.0), {"x": "m", "theta": "rad"}, {"v": ("m/s", -1.0, 1.0)})
 
 
 @pytest.fixture
@@ -25,7 +27,8 @@ def ax():
 def trajectory():
     t = np.linspace(0.0, 1.0, 11)
     x = np.column_stack([np.sin(t), np.cos(t)])
-    return Trajectory(t, x, np.zeros((10, 1)), np.zeros((11, 2)), arrival=1.0, cost=1.0, clearance=np.inf)
+    u, target = np.arange(10.0)[:, np.newaxis], np.zeros((11, 2))
+    return Trajectory(PLANT, t, x, u, target, arrival=1.0, cost=1.0, clearance=np.inf)
 
 
 def _entry(complexity, cost):
@@ -33,7 +36,7 @@ def _entry(complexity, cost):
 
 
 def test_a_trajectory_shows_each_state_and_its_target(ax, trajectory):
-    assert plot_trajectory(trajectory, STATES, ax=ax) is ax
+    assert plot_trajectory(trajectory, ax=ax) is ax
     x, x_target, theta, theta_target = (line.get_ydata() for line in ax.lines)
     assert np.array_equal(np.column_stack([x, theta]), trajectory.x)
     assert np.array_equal(np.column_stack([x_target, theta_target]), trajectory.target)
@@ -41,14 +44,33 @@ def test_a_trajectory_shows_each_state_and_its_target(ax, trajectory):
 
 
 def test_a_trajectory_shows_only_the_states_asked_for(ax, trajectory):
-    plot_trajectory(trajectory, STATES, shown=["theta"], ax=ax)
+    plot_trajectory(trajectory, shown=["theta"], ax=ax)
     assert np.array_equal(ax.lines[0].get_ydata(), trajectory.x[:, 1])
     assert len(ax.lines) == 2
 
 
+def test_a_control_is_shown_as_it_was_held(ax, trajectory):
+    trajectory.plot(shown=["theta", "v"], ax=ax)
+    values, edges, _ = ax.patches[0].get_data()
+    assert np.array_equal(values, trajectory.u[:, 0])
+    assert np.array_equal(edges, trajectory.t)
+    assert ax.get_legend_handles_labels()[1] == [r"$\theta$ (rad)", "$v$ (m/s)"]
+
+
+def test_a_response_shows_each_output_over_one_input(ax):
+    program = trace(lambda f: {"a": 2.0 * f.x, "b": f.x * f.y + 1.0}, [("f", ("x", "y"))])
+    plot_response(program, "x", (-1.0, 3.0), units={"a": "N"}, ax=ax)
+    first, second = (line.get_xydata() for line in ax.lines)
+    assert np.array_equal(first[:, 1], 2.0 * first[:, 0])
+    assert np.array_equal(first[[0, -1], 0], [-1.0, 3.0])
+    assert np.array_equal(second[:, 1], np.ones(401))
+    with pytest.raises(GpsynthError, match="'z' is not an input; they are x, y"):
+        plot_response(program, "z", ax=ax)
+
+
 def test_an_unknown_state_is_named(ax, trajectory):
-    with pytest.raises(GpsynthError, match="'y' is not a state; the states are x, theta"):
-        plot_trajectory(trajectory, STATES, shown=["y"], ax=ax)
+    with pytest.raises(GpsynthError, match="'y' is not a state or control; they are x, theta and v"):
+        plot_trajectory(trajectory, shown=["y"], ax=ax)
 
 
 def test_a_front_shows_each_law(ax):

@@ -1,15 +1,24 @@
 """Stage 1 on a plant whose answer is known: the double integrator."""
 
+import csv
+
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
-from gpsynth.errors import ProblemError
+from gpsynth.encodings.variational import VariationalEncoding
+from gpsynth.epochs import Epochs
+from gpsynth.errors import OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator
+from gpsynth.islands import Islands
+from gpsynth.objective import costs_of
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
-from gpsynth.synthesis import costs_of, synthesize
+from gpsynth.structure_search import StructureSearch
+from gpsynth.synthesis import synthesize
+from gpsynth.variational_ga import VariationalGA
 
 PLANT = Plant(
     lambda x, u: (x.speed, u.force),
@@ -56,6 +65,23 @@ def test_finds_the_linear_quadratic_regulator() -> None:
     assert gains == pytest.approx([1.0, np.sqrt(2)], rel=0.1)
 
 
+@pytest.mark.parametrize("name", ["epochs", "authors' algorithm"])
+def test_searches_that_move_a_basis_find_it_too(name: str) -> None:
+    problem = quadratic()
+    names = problem.features.names
+    varied = VariationalEncoding(names, ("force",), space=ParameterSpace(2, -5.0, 5.0), n_variations=3)
+    search = {
+        "epochs": Epochs(StructureSearch(varied, population=20, offspring=20), every=3),
+        "authors' algorithm": VariationalGA(varied, population=30, couples=5, epoch=3, elite=3),
+    }[name]
+    with pytest.raises(OptimizerError, match=f"a {type(search).__name__} cannot"):
+        synthesize(problem, varied, budget=500, search=search, islands=Islands(2))
+    result = synthesize(problem, varied, seed=1, budget=500, tuning=200, search=search)
+    assert result.evaluations <= 500
+    optimum = np.mean([np.sqrt(2) * (x * x + v * v) + 2 * x * v for x, v in STARTS])
+    assert result.best.cost == pytest.approx(optimum, rel=0.02)  # on an eighth of the budget above
+
+
 def test_front_entries_are_scored_on_the_whole_problem() -> None:
     result = synthesized(seed=2)
     evaluator = Evaluator(quadratic())
@@ -66,6 +92,19 @@ def test_front_entries_are_scored_on_the_whole_problem() -> None:
         (entry.cost for entry in result.front), reverse=True
     )
     assert result.table().count("\n") >= len(result.front)
+
+
+def test_the_front_is_a_table_a_file_and_a_picture(tmp_path) -> None:
+    problem = quadratic()
+    result = synthesize(problem, encoding(problem), seed=2, budget=450, tuning=0)
+    result.to_csv(tmp_path / "front.csv")
+    with (tmp_path / "front.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["cost"]) for row in rows] == [entry.cost for entry in result.front]
+    assert [row["formulas"] for row in rows] == ["; ".join(entry.law.formulas()) for entry in result.front]
+    assert [row["complexity"] for row in result.rows()] == [entry.complexity for entry in result.front]
+    axes = result.plot(ax=Figure().add_subplot())
+    assert axes.lines[1].get_ydata().tolist() == [entry.cost for entry in result.front]
 
 
 def test_threads_do_not_change_the_result() -> None:

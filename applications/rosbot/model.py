@@ -1,4 +1,4 @@
-"""The ROSbot's kinematics (Shmalko & Yamshanov, eq. 12), what its stabilizer sees, and when it has arrived."""
+"""The ROSbot: its kinematics (Shmalko & Yamshanov, eq. 12) and dynamics, what its stabilizer sees, when it is there."""
 
 from collections.abc import Callable
 from types import MappingProxyType
@@ -13,6 +13,24 @@ from gpsynth.tracing import where, wrap_angle
 Pose = Any
 NEAR = 0.05  # m
 STATES = MappingProxyType({"x": "m", "y": "m", "theta": "rad"})
+SPEEDS = MappingProxyType({"speed": "m/s", "turn_rate": "rad/s"})
+
+# Rate-limited lags fitted to the robot in MuJoCo under Husarion's ROS 2 controller (nominal), and the range over
+# simulators and controllers: Gazebo 11 with Husarion's own model, MuJoCo with and without the host's limits. The gain
+# of turning is that of skid steer, (s/2)(t/2) / ((t/2)^2 + a^2) for wheel separation s, track t and half wheelbase a:
+# 0.77 for Husarion's geometry, 1.08 for the separation their controller is told (rosbot_ros, Apache-2.0).
+FAMILY = MappingProxyType(
+    {
+        "k_v": ("", 0.98, 1.02, 1.0),
+        "tau_v": ("s", 0.02, 0.2, 0.04),
+        "a_v": ("m/s2", 1.0, 1.5, 1.0),
+        "k_omega": ("", 0.6, 1.05, 1.04),
+        "tau_omega": ("s", 0.02, 0.2, 0.1),
+        "a_omega": ("rad/s2", 2.0, 4.0, 2.5),
+    }
+)
+DELAY = (0.0, 0.1)  # s, from the measured pose to the command's effect
+STEP = 0.01  # s; half of the shortest lag, where the Runge-Kutta method is stable up to 2.7 lags
 
 
 def unicycle(
@@ -21,6 +39,22 @@ def unicycle(
     """Speed v (m/s) and turn rate omega (rad/s) as the controls, each within its own limits."""
     controls = {"v": ("m/s", *v), "omega": ("rad/s", *omega)}
     return Plant(_unicycle, states=STATES, controls=controls, angles=("theta",), name=name)
+
+
+def dynamic_unicycle(
+    v: tuple[float, float] = (-0.5, 0.5),
+    omega: tuple[float, float] = (-0.5, 0.5),
+    *,
+    name: str = "dynamic_unicycle",
+) -> Plant:
+    """Commanded speeds (m/s, rad/s) that the robot follows with a gain, a lag and limited accelerations (FAMILY).
+
+    The first states and the controls are those of `unicycle`, so a law of the one drives the other. Integrate with
+    steps of at most STEP.
+    """
+    controls = {"v": ("m/s", *v), "omega": ("rad/s", *omega)}
+    states = {**STATES, **SPEEDS}
+    return Plant(_dynamic_unicycle, states, controls, parameters=FAMILY, angles=("theta",), name=name)
 
 
 def wheel_coupled(limit: float = 10.0) -> Plant:
@@ -34,6 +68,12 @@ def wheel_coupled(limit: float = 10.0) -> Plant:
 
 def _unicycle(x: Pose, u: Pose) -> tuple[Any, ...]:
     return u.v * np.cos(x.theta), u.v * np.sin(x.theta), u.omega  # eq. 12
+
+
+def _dynamic_unicycle(x: Pose, u: Pose, p: Pose) -> tuple[Any, ...]:
+    forward = np.clip((p.k_v * u.v - x.speed) / p.tau_v, -p.a_v, p.a_v)
+    turning = np.clip((p.k_omega * u.omega - x.turn_rate) / p.tau_omega, -p.a_omega, p.a_omega)
+    return x.speed * np.cos(x.theta), x.speed * np.sin(x.theta), x.turn_rate, forward, turning
 
 
 def _wheel_coupled(x: Pose, u: Pose) -> tuple[Any, ...]:

@@ -120,6 +120,7 @@ def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, La
 def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanReport:
     """The plan to stay, of a start within the tolerance: without points, controls and search."""
     stay = Trajectory(
+        plant=law.plant,
         t=np.zeros(1),
         x=scenario.start[np.newaxis],
         u=np.empty((0, 2)),

@@ -2,17 +2,20 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
 
-from applications.rosbot.model import Pose, features, reached, unicycle
+from applications.rosbot.model import DELAY, STATES, STEP, Pose, dynamic_unicycle, features, reached, unicycle
 from gpsynth.arrays import Floats
+from gpsynth.draws import Draws, random_draws
 from gpsynth.encodings.cartesian import CartesianEncoding
-from gpsynth.encodings.network_operator import NetworkOperatorEncoding
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.errors import EncodingError
+from gpsynth.islands import Islands
 from gpsynth.law import Law
 from gpsynth.optimizers import Progress
 from gpsynth.plant import Plant
@@ -25,9 +28,19 @@ from gpsynth.tracing import where, wrap_angle
 OPERATIONS = ("add", "sub", "mul", "min", "max", "abs", "square", "tanh", "sin", "cos", "atan")
 # all continuous, and no division: laws with sgn, atan2 or roots arrive as early, but chatter on the way
 POSITION, HEADING = 0.05, 0.1  # m, rad: tolerance of arrival
-SEARCH_BUDGET = 30_000  # parameter vectors
+SEARCH_BUDGET = 48_000  # parameter vectors
+ISLANDS = Islands(8)
+# The first sign: left and right change places. The second: the robot turns round, so that forward is backward. A law
+# without these symmetries can be good on its training; it reaches the goal by turning the same way all the time.
+SYMMETRIES = MappingProxyType(
+    {
+        **{"error_x": "+-", "error_y": "--", "error_theta": "-+", "distance": "++"},
+        **{"bearing": "-+", "approach": "-+", "heading": "-+", "v": "+-", "omega": "-+"},
+    }
+)
 _LAW = Path(__file__).with_name("law.json")
-_ROUGH, _TUNING, _UNSEEN = 101, 102, 103  # streams of the starts
+BOX = 3.0  # m
+_ROUGH, _TUNING, _UNSEEN, _DRAWS = 101, 102, 103, 104  # streams of the starts and of the draws
 
 
 def default_law() -> Law:
@@ -35,15 +48,15 @@ def default_law() -> Law:
     return Law.load(_LAW)
 
 
-def poses(rng: np.random.Generator, count: int, box: float = 2.0) -> Floats:
+def poses(rng: np.random.Generator, count: int, box: float = BOX) -> Floats:
     """Random poses (count, 3): x and y within ±box m, any heading."""
     heading = rng.uniform(-np.pi, np.pi, (count, 1))
     return np.concatenate([rng.uniform(-box, box, (count, 2)), heading], axis=1)
 
 
 def training_poses(rng: np.random.Generator, count: int) -> Floats:
-    """Half of the poses within ±2 m, a quarter within ±0.3 m, a quarter at the goal with another heading."""
-    reach = np.resize([1.0, 1.0, 0.15, 0.0], count)
+    """Half of the poses within ±3 m, a quarter within ±0.3 m, a quarter at the goal with another heading."""
+    reach = np.resize([1.0, 1.0, 0.1, 0.0], count)
     scaled: Floats = poses(rng, count) * np.column_stack([reach, reach, np.ones(count)])
     return scaled
 
@@ -56,25 +69,30 @@ def stabilization(
     method: Method = "rk4",
     plant: Plant | None = None,
     stop: bool = True,
+    draws: Draws | None = None,
 ) -> Problem:
     """Bring the robot from `starts` (S, 3) to the origin with heading 0 in least time; with stop=False, keep it there.
 
     Running cost is the time outside the tolerance and a tenth of what is missing; a run that is not within it at the
-    horizon (s) pays for the rest.
+    horizon (s) pays for the rest. On a plant with speeds among its states the robot starts from rest.
     """
+    plant = plant or unicycle()
+    speeds = len(plant.states) - len(STATES)
     return Problem(
-        plant or unicycle(),
-        starts,
-        goal=(0.0, 0.0, 0.0),
-        tolerance=(POSITION, POSITION, HEADING),
+        plant,
+        np.pad(np.atleast_2d(starts), ((0, 0), (0, speeds))),
+        goal=np.zeros(len(plant.states)),
+        tolerance=(POSITION, POSITION, HEADING, *[1.0] * speeds),
         horizon=horizon,
         period=period,
+        step=period / np.ceil(period / STEP - 1e-9) if speeds else period,
         method=method,
         features=features,
         reached=reached(POSITION, HEADING),
         running=_away,
         terminal=_missing,
         stop=stop,
+        draws=draws,
     )
 
 
@@ -89,7 +107,8 @@ def synthesize_stabilizer(
 ) -> SynthesisResult:
     """Find the stabilizer from scratch: a law that reaches every target and holds it.
 
-    Searched on 64 starts at 0.1 s, tuned on 64 others at 0.05 s, scored on 256 more at 0.05 s and 0.005 s.
+    Searched on 64 starts at 0.1 s, tuned on 64 others at 0.05 s, scored on 256 more at 0.05 s and 0.005 s and on the
+    dynamics of the robot, each start under a draw of its own.
     """
     problem = stabilization(training_poses(stream(seed, _TUNING), 64), stop=False)
     rough = stabilization(
@@ -97,6 +116,8 @@ def synthesize_stabilizer(
     )
     unseen = training_poses(stream(seed, _UNSEEN), 256)
     trials = [stabilization(unseen, period=period, stop=False) for period in (0.05, 0.005)]
+    draws = random_draws(dynamic_unicycle(), stream(seed, _DRAWS), len(unseen), delay=DELAY)
+    trials.append(stabilization(unseen, plant=dynamic_unicycle(), draws=draws, stop=False))
     chosen = _encoding(encoding, problem)
     return synthesize(
         *(problem, chosen),
@@ -105,6 +126,7 @@ def synthesize_stabilizer(
         tuning=300,
         rough=rough,
         trials=trials,
+        islands=ISLANDS,
         threads=threads,
         progress=progress,
         callback=callback,
@@ -131,9 +153,9 @@ def _encoding(name: str, problem: Problem) -> Any:
     inputs, outputs = problem.features.names, tuple(problem.plant.control_names)
     space = ParameterSpace(8, -10.0, 10.0)
     if name == "tree":
-        return TreeEncoding(inputs, outputs, OPERATIONS, space, max_size=20)
+        return TreeEncoding(inputs, outputs, OPERATIONS, space, max_size=20, symmetries=SYMMETRIES)
     if name == "cartesian":
         return CartesianEncoding(inputs, outputs, OPERATIONS, space)
     if name == "network-operator":
-        return NetworkOperatorEncoding(inputs, outputs, space=ParameterSpace(len(inputs), -10.0, 10.0))
+        return VariationalEncoding(inputs, outputs, space=ParameterSpace(len(inputs), -10.0, 10.0))
     raise EncodingError(f"encoding must be tree, cartesian or network-operator, not {name!r}")

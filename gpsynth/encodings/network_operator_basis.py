@@ -3,9 +3,9 @@
 import numpy as np
 
 from gpsynth.encodings.checks import checked_at_least
-from gpsynth.encodings.network_operator_matrix import Matrix
+from gpsynth.encodings.network_operator_matrix import ADD, IDENTITY_EDGE, Matrix
 
-ADD, MULTIPLY, IDENTITY_EDGE = 1, 2, 1  # function numbers
+MULTIPLY = 2  # number of a binary function
 
 
 def basic_operator(n_inputs: int, n_parameters: int, n_outputs: int, n_nodes: int | None = None) -> Matrix:

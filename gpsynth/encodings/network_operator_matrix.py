@@ -5,39 +5,31 @@ gathers its edges; 0 is no edge, or a source. Numbers are those of the 2022 libr
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import partial, reduce
-from itertools import chain
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gpsynth.arrays import Ints, frozen
-from gpsynth.builder import Builder, Reference
+from gpsynth.builder import Builder
+from gpsynth.encodings.network_operator_values import node_values
 from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.solution import Functions, Variation
+from gpsynth.encodings.variations import IDENTITY, is_variation, random_variation, vary
 from gpsynth.errors import EncodingError
-from gpsynth.operations import BINARY_BY_NUMBER, UNARY_BY_NUMBER
+from gpsynth.operations import BINARY_BY_NUMBER, UNARY_BY_NUMBER, operation
 from gpsynth.program import Program
 
 MOST_NODES = 512
-
-Edge = tuple[int, int]  # tail, number of the unary function
-
-# |value| <= 1e8 or NaN for any operand, so that starting nop_mul, max, min or prob_sum from the unit changes nothing
-_BOUNDED = frozenset(
-    (
-        *("nop_square", "tanh_half", "step", "sgn", "cos", "sin", "atan", "clip_unit", "signed_decay"),
-        *("signed_saturation", "sigmoid", "step_open", "sgn_dead_zone", "circle", "nop_mul"),
-    )
-)
-_KEEPS_BOUND = frozenset(("identity", "neg", "half"))
-# from their unit these start with the very value of the first edge, save that -0.0 becomes 0.0
-_STARTS_FREE = frozenset(("add", "signed_abs_sum", "signed_abs_max"))
-_STARTS_FREE_IF_BOUNDED = frozenset(("nop_mul", "max", "min", "prob_sum"))
+ADD, IDENTITY_EDGE = 1, 1  # numbers of a binary and a unary function
+ROBOT_OPERATIONS: tuple[str, ...] = (
+    *(UNARY_BY_NUMBER[number].name for number in (*range(1, 20), 23)),
+    *(BINARY_BY_NUMBER[number].name for number in (1, 2)),
+)  # those of the mobile robots, 2016 and 2022
 
 
 @dataclass(frozen=True, eq=False)
 class Matrix:
-    """A network operator and which of its nodes are what; raises EncodingError if it is not a valid one."""
+    """A network operator and which of its nodes are what, a `Solution`; raises EncodingError if it is not valid."""
 
     psi: Ints  # (L, L)
     inputs: tuple[int, ...]  # source nodes, in the order of the formula's inputs
@@ -64,8 +56,62 @@ class Matrix:
     def __hash__(self) -> int:
         return hash(self._content())
 
+    @property
+    def entries(self) -> Ints:
+        """The matrix, (L, L)."""
+        return self.psi
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """How many inputs, parameters and outputs the formula has."""
+        return len(self.inputs), len(self.parameters), len(self.outputs)
+
+    @property
+    def identity(self) -> Variation:
+        """(0, 0, 0, 0)."""
+        return IDENTITY
+
+    def functions(self, operations: tuple[str, ...]) -> Functions:
+        """Numbers of the unary and of the binary functions; raises EncodingError for one without a number."""
+        return numbered(operations)
+
+    def draw(self, entries: Ints, functions: Functions, rng: np.random.Generator) -> Variation:
+        """One of four kinds of change: a unary or a binary function, an edge more, an edge less."""
+        return random_variation(entries, functions, rng)
+
+    def varied(self, entries: Ints, variations: tuple[Variation, ...]) -> Ints:
+        """A copy of the entries after these variations; those whose guard fails are passed over."""
+        return vary(entries, variations)
+
+    def contains(self, variation: Variation, functions: Functions) -> bool:
+        """Whether `draw` could have given this variation, or it is the identity."""
+        return is_variation(variation, len(self.psi), functions)
+
+    def with_entries(self, entries: Ints) -> "Matrix":
+        """The same nodes under other functions; raises EncodingError if it is not a valid operator."""
+        return replace(self, psi=entries)
+
+    def program(self, entries: Ints, inputs: tuple[str, ...], outputs: tuple[str, ...]) -> Program:
+        """The formula of valid entries; nodes start with their first edge, not with their unit."""
+        return _program(entries, self, inputs, outputs, strict=False)
+
     def _content(self) -> tuple[object, ...]:
         return self.psi.shape, self.psi.tobytes(), self.inputs, self.parameters, self.outputs
+
+
+def numbered(operations: tuple[str, ...]) -> Functions:
+    """Network-operator numbers of the unary and of the binary functions among these operations.
+
+    Edges and nodes need one each, so the identity and addition stand in where none is offered. Raises EncodingError
+    for an operation without a number.
+    """
+    rows = [operation(name) for name in operations]
+    for row in rows:
+        if row.unary_number is None and row.binary_number is None:
+            raise EncodingError(f"{row.name} is not a function of the network operator")
+    unary = tuple(row.unary_number for row in rows if row.unary_number is not None)
+    binary = tuple(row.binary_number for row in rows if row.binary_number is not None)
+    return unary or (IDENTITY_EDGE,), binary or (ADD,)
 
 
 def decode_matrix(
@@ -86,51 +132,17 @@ def decode_matrix(
     for kind, given, nodes in (("inputs", names, matrix.inputs), ("outputs", results, matrix.outputs)):
         if len(given) != len(nodes):
             raise EncodingError(f"the matrix has {len(nodes)} {kind}, but {len(given)} names were given")
-    return decode_entries(matrix.psi, matrix, names, results, strict=strict)
+    return _program(matrix.psi, matrix, names, results, strict=strict)
 
 
-def decode_entries(
+def _program(
     psi: Ints, nodes: Matrix, inputs: tuple[str, ...], outputs: tuple[str, ...], *, strict: bool
 ) -> Program:
     """As `decode_matrix`, of entries known to be valid; `nodes` says which node is what."""
     builder = Builder(inputs, ParameterSpace.names(len(nodes.parameters)))
-    edges = _edges(psi, nodes.outputs)
-    values = dict(zip(nodes.inputs + nodes.parameters, builder.inputs + builder.parameters, strict=True))
-    bounded: set[int] = set()
-    for node in edges:
-        function = BINARY_BY_NUMBER[int(psi[node, node])]
-        name, first = function.name, edges[node][0]
-        free = name in _STARTS_FREE or (name in _STARTS_FREE_IF_BOUNDED and _is_bounded(first, bounded))
-        unit = [] if free or not strict or function.unit is None else [builder.constant(function.unit)]
-        terms = (_term(builder, UNARY_BY_NUMBER[number].name, values[tail]) for tail, number in edges[node])
-        values[node] = reduce(partial(builder.apply, name), chain(unit, terms))
-        if name in _BOUNDED or (len(edges[node]) == 1 and _is_bounded(first, bounded)):
-            bounded.add(node)
+    sources = zip(nodes.inputs + nodes.parameters, builder.inputs + builder.parameters, strict=True)
+    values = node_values(builder, psi, dict(sources), nodes.outputs, strict=strict)
     return builder.build([values[node] for node in nodes.outputs], outputs)
-
-
-def _edges(psi: Ints, outputs: tuple[int, ...]) -> dict[int, list[Edge]]:
-    """The incoming edges of every node that outputs need and that is no source; nodes and tails ascend."""
-    heads, tails = np.nonzero(psi.T)
-    incoming: dict[int, list[Edge]] = {}
-    for head, tail, number in zip(heads.tolist(), tails.tolist(), psi[tails, heads].tolist(), strict=True):
-        if tail != head:
-            incoming.setdefault(head, []).append((tail, number))
-    needed = set(outputs)
-    for node in reversed(incoming):
-        if node in needed:
-            needed.update(tail for tail, _ in incoming[node])
-    return {node: edges for node, edges in incoming.items() if node in needed}
-
-
-def _term(builder: Builder, name: str, value: Reference) -> Reference:
-    return value if name == "identity" else builder.apply(name, value)
-
-
-def _is_bounded(edge: Edge, bounded: set[int]) -> bool:
-    tail, number = edge
-    name = UNARY_BY_NUMBER[number].name
-    return name in _BOUNDED or (name in _KEEPS_BOUND and tail in bounded)
 
 
 def _check_nodes(matrix: Matrix) -> None:

@@ -1,6 +1,6 @@
 """What an encoding is: a space of structures with numbers beside them, each of which decodes to a program."""
 
-from typing import Protocol, TypeVar
+from typing import Protocol, Self, TypeVar, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
@@ -60,4 +60,17 @@ class Encoding(Protocol[G]):
 
     def check(self, genome: G) -> None:
         """Raises EncodingError unless the genome belongs to this space, as one read from a file may not."""
+        ...
+
+
+@runtime_checkable
+class Rebasable(Encoding[G], Protocol[G]):
+    """An encoding whose genomes are changes to a basic solution, which a search may move."""
+
+    def basic(self, values: npt.ArrayLike | None = None) -> G:
+        """The genome that changes nothing, with these numbers."""
+        ...
+
+    def rebased(self, genome: G) -> Self:
+        """The encoding whose basic solution is that of this genome."""
         ...

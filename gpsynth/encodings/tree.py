@@ -1,13 +1,11 @@
 """Expression trees, one per output, generated, cut and joined by DEAP (Koza 1992; Fortin et al. 2012)."""
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from math import exp
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from threading import Lock
-from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +15,10 @@ from gpsynth.arrays import Floats
 from gpsynth.builder import Builder, Reference
 from gpsynth.encodings.checks import checked_at_least, checked_names, checked_operations
 from gpsynth.encodings.parameters import ParameterSpace, Values
+from gpsynth.encodings.rules import Rules
+from gpsynth.encodings.tree_changes import changed
+from gpsynth.encodings.tree_constraints import Constraints, Meaning, constraints_of
+from gpsynth.encodings.tree_of_program import trees_of
 from gpsynth.errors import EncodingError
 from gpsynth.operations import operation
 from gpsynth.program import Program
@@ -41,7 +43,8 @@ class TreeEncoding:
     """One tree per output; subtrees that occur twice are computed once.
 
     A child that is higher than `max_height`, larger than `max_size` nodes or has more numbers than `space.count` is
-    replaced by its parent.
+    replaced by its parent; `rules` always hold. Where `symmetries` are given (+ or - for each input and output, one
+    sign a symmetry) every formula keeps them; where `units` are, all units fit, numbers having any unit.
     """
 
     inputs: tuple[str, ...]
@@ -53,12 +56,16 @@ class TreeEncoding:
     max_height: int = 10
     max_size: int = 60  # nodes per tree
     transfer: float = 0.5  # how often a crossover chooses the two outputs independently
+    rules: Rules = Rules()
+    symmetries: Mapping[str, str] | None = field(default=None, hash=False)  # of inputs and outputs
+    units: Mapping[str, str] | None = field(default=None, hash=False)  # of inputs and outputs, to be kept
 
     def __post_init__(self) -> None:
         checked_names(self.inputs, self.outputs)
         checked_operations(self.operations)
         checked_at_least("max_height", self.max_height, 0)
         checked_at_least("max_size", self.max_size, 1)
+        _ = self._constraints  # checks rules and units
         for name in ("start_heights", "grown_heights"):
             low, high = getattr(self, name)
             if not 0 <= low <= high <= self.max_height:
@@ -68,19 +75,30 @@ class TreeEncoding:
 
     def random(self, rng: np.random.Generator) -> TreeGenome:
         """Trees grown half-and-half."""
-        with _lent(rng):
-            trees = [self._grown() for _ in self.outputs]
-        return self._read(trees, rng)
+        for _ in range(_TRIES):
+            with _lent(rng):
+                trees = [self._grown(output) for output in range(len(self.outputs))]
+            genome = self._read(trees, rng)
+            if len(genome.values) <= self.space.count and self._lawful(genome):
+                return genome
+        return self._smallest()
 
     def mutate(self, genome: TreeGenome, rng: np.random.Generator) -> TreeGenome:
         """A subtree replaced, a node replaced, inserted or taken out, or one number moved."""
         if self.space.moves(genome.values, rng):
             return replace(genome, values=self.space.moved(genome.values, rng))
-        trees = self.to_deap(genome)
-        index = int(rng.integers(len(trees)))
-        with _lent(rng):
-            (trees[index],) = self._changed(trees[index])
-        return self._child(trees, index, genome, rng)
+        for _ in range(
+            _TRIES if self._constraints.restrict else 1
+        ):  # what breaks a constraint is often undone whole
+            trees = self.to_deap(genome)
+            index = int(rng.integers(len(trees)))
+            with _lent(rng):
+                number = self._number if self._extends else None
+                trees[index] = changed(trees[index], self.primitives, self.grown_heights, number)
+            child = self._child(trees, index, genome, rng)
+            if child != genome:
+                break
+        return child
 
     def crossover(
         self, a: TreeGenome, b: TreeGenome, rng: np.random.Generator
@@ -93,6 +111,22 @@ class TreeEncoding:
         with _lent(rng):
             ours[i], theirs[j] = gp.cxOnePoint(ours[i], theirs[j])
         return self._child(ours, i, a, rng), self._child(theirs, j, b, rng)
+
+    def from_program(self, program: Program, parameters: Sequence[float] = ()) -> TreeGenome:
+        """The genome of a given formula: its parameters, with these values, and its constants become numbers.
+
+        Raises EncodingError if the formula is not one of this space: other inputs, outputs or operations, too large.
+        """
+        if not set(program.inputs) <= set(self.inputs) or program.names != self.outputs:
+            raise EncodingError(
+                f"the formula maps {', '.join(program.inputs)} to {', '.join(program.names)}; "
+                f"expected {', '.join(self.inputs)} to {', '.join(self.outputs)}"
+            )
+        trees = trees_of(program, parameters, self.inputs, self.operations, most=self.max_size)
+        codes = tuple(tuple(map(self._code, tree)) for tree in trees)
+        genome = TreeGenome(codes, tuple(item for tree in trees for item in tree if isinstance(item, float)))
+        self.check(genome)
+        return genome
 
     def decode(self, genome: TreeGenome) -> Program:
         """The trees as one program; each number is a parameter of its own."""
@@ -125,10 +159,15 @@ class TreeEncoding:
         self.space.checked(genome.values, numbers)
         for number, deap_tree in enumerate(self.to_deap(genome)):
             if not self._fits(deap_tree):
+                size = self.rules.size(_operations(deap_tree))
                 raise EncodingError(
-                    f"tree {number} has height {deap_tree.height} and {len(deap_tree)} nodes; "
+                    f"tree {number} has height {deap_tree.height} and {size} nodes; "
                     f"at most {self.max_height} and {self.max_size} are allowed"
                 )
+            if len(self.rules.kept(_operations(deap_tree))) < len(deap_tree):
+                raise EncodingError(f"tree {number} breaks a rule: {self.rules}")
+        if not self._lawful(genome):
+            raise EncodingError("the trees do not keep the symmetries or units of inputs and outputs")
 
     @cached_property
     def primitives(self) -> gp.PrimitiveSet:
@@ -177,63 +216,74 @@ class TreeEncoding:
         return missing == 0
 
     def _fits(self, tree: gp.PrimitiveTree) -> bool:
-        return len(tree) <= self.max_size and tree.height <= self.max_height
+        small = self.rules.size(_operations(tree)) <= self.max_size
+        return len(tree) > 0 and small and tree.height <= self.max_height
 
-    def _changed(self, tree: gp.PrimitiveTree) -> tuple[gp.PrimitiveTree]:
-        """DEAP's mutations and one of ours; a whole new subtree is the commonest, the others are small steps."""
-        draw = random.random()  # noqa: S311 the generator is ours while it is lent
-        if draw < 0.3 and self._extends:
-            return (self._extended(tree),)
-        if draw < 0.4 and self.operations:
-            return cast(tuple[gp.PrimitiveTree], gp.mutInsert(tree, self.primitives))
-        if draw < 0.5:
-            return cast(tuple[gp.PrimitiveTree], gp.mutShrink(tree))
-        if draw < 0.65:
-            return cast(tuple[gp.PrimitiveTree], gp.mutNodeReplacement(tree, self.primitives))
-        grow = partial(gp.genHalfAndHalf, min_=self.grown_heights[0], max_=self.grown_heights[1])
-        return cast(tuple[gp.PrimitiveTree], gp.mutUniform(tree, expr=grow, pset=self.primitives))
+    def _obeying(self, tree: gp.PrimitiveTree, output: int) -> gp.PrimitiveTree:
+        if not self._constraints.restrict:
+            return tree
+        factor = [self.primitives.mapping["mul"], self._number(1.0)] if self.units else []
+        nodes = [(node, self._meaning(node)) for node in tree]
+        return gp.PrimitiveTree(self._constraints.obeying(nodes, output, factor))
+
+    def _lawful(self, genome: TreeGenome) -> bool:
+        """Whether the trees keep to rules, symmetries and units."""
+        if not self._constraints.restrict:
+            return True
+        trees = enumerate(self.to_deap(genome))
+        return all(len(self._obeying(tree, output)) == len(tree) for output, tree in trees)
+
+    def _meaning(self, node: gp.Primitive | gp.Terminal) -> Meaning:
+        if isinstance(node, gp.Primitive):
+            return str(node.name)
+        return None if _is_number(node) or node.name == _NEW else self._codes[node.name]
+
+    @cached_property
+    def _constraints(self) -> Constraints:
+        return constraints_of(
+            self.rules, self.symmetries, self.units, (self.inputs, self.outputs), self.operations, self.space
+        )
+
+    def _smallest(self) -> TreeGenome:
+        """One leaf for each output, with a factor where its unit needs one."""
+        trees = []
+        for output in range(len(self.outputs)):
+            leaf = self._constraints.smallest(output)
+            node = self._number(1.0) if leaf is None else self._nodes[leaf]
+            meanings = map(self._meaning, self._obeying(gp.PrimitiveTree([node]), output))
+            trees.append(tuple(self._code(1.0 if meaning is None else meaning) for meaning in meanings))
+        numbers = sum(tree.count(len(self.inputs)) for tree in trees)
+        return TreeGenome(tuple(trees), (self.space.nearest(1.0),) * numbers)
+
+    def _code(self, item: str | int | float) -> int:
+        """The code of an operation, an input's index or a number."""
+        if isinstance(item, str):
+            return len(self.inputs) + 1 + self.operations.index(item)
+        return item if isinstance(item, int) else len(self.inputs)
 
     @cached_property
     def _extends(self) -> bool:
         return self.space.count > 0 and {"add", "mul"} <= set(self.operations)
 
-    def _extended(self, tree: gp.PrimitiveTree) -> gp.PrimitiveTree:
-        """A node plus a weighted term, times a number near 1 or plus a number near 0.
-
-        What the tree did it still does, nearly; tuning the new number shows what the extension is worth.
-        """
-        place = tree.searchSubtree(random.randrange(len(tree)))  # noqa: S311 as above
-        add, times = self.primitives.mapping["add"], self.primitives.mapping["mul"]
-        draw = random.random()  # noqa: S311
-        if draw < 0.5:
-            weight = random.choice((-1.0, 1.0)) * exp(random.uniform(-3.0, 1.5))  # noqa: S311
-            tree[place] = [add, *tree[place], times, self._number(weight), *self._term()]
-        elif draw < 0.85:
-            tree[place] = [times, *tree[place], self._number(random.gauss(1.0, 0.1))]
-        else:
-            tree[place] = [add, *tree[place], self._number(random.gauss(0.0, 0.1))]
-        return tree
-
-    def _term(self) -> list[gp.Primitive | gp.Terminal]:
-        if random.random() < 0.5:  # noqa: S311
-            return [self.primitives.mapping[random.choice(self.primitives.arguments)]]  # noqa: S311
-        return cast(list[gp.Primitive | gp.Terminal], gp.genHalfAndHalf(self.primitives, *self.grown_heights))
-
     def _number(self, value: float) -> gp.Terminal:
         return gp.Terminal(self.space.nearest(value), False, object)
 
-    def _grown(self) -> gp.PrimitiveTree:
+    def _grown(self, output: int) -> gp.PrimitiveTree:
         for _ in range(_TRIES):
             tree = gp.PrimitiveTree(gp.genHalfAndHalf(self.primitives, *self.start_heights))
+            tree = self._obeying(tree, output)
             if self._fits(tree):
                 return tree
-        return gp.PrimitiveTree(gp.genFull(self.primitives, 0, 0))
+        leaf = self._constraints.smallest(output)
+        return gp.PrimitiveTree([self._number(1.0) if leaf is None else self._nodes[leaf]])
 
     def _child(
         self, trees: list[gp.PrimitiveTree], index: int, parent: TreeGenome, rng: np.random.Generator
     ) -> TreeGenome:
+        trees[index] = self._obeying(trees[index], index)
         child = self._read(trees, rng)
-        return child if self._fits(trees[index]) and len(child.values) <= self.space.count else parent
+        fits = self._fits(trees[index]) and len(child.values) <= self.space.count
+        return child if fits and self._lawful(child) else parent
 
     def _read(self, trees: list[gp.PrimitiveTree], rng: np.random.Generator) -> TreeGenome:
         """The genome of DEAP's trees; new numbers are drawn, or become inputs where there are enough of them."""
@@ -272,6 +322,11 @@ class TreeEncoding:
                 operands = [stack.pop() for _ in range(arity)]
                 stack.append(builder.apply(self.operations[code - number - 1], *operands))
         return stack[0]
+
+
+def _operations(tree: gp.PrimitiveTree) -> list[str]:
+    """The name of each node's operation, empty where a leaf stands."""
+    return [node.name if isinstance(node, gp.Primitive) else "" for node in tree]
 
 
 def _is_number(node: gp.Primitive | gp.Terminal) -> bool:

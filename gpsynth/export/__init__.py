@@ -1,4 +1,4 @@
-"""Every form of a law that leaves the package; numba and sympy load with the form that needs them."""
+"""Every form of a law that leaves the package; numba, sympy, casadi and control load with the form that needs them."""
 
 from importlib import import_module
 from types import MappingProxyType
@@ -6,18 +6,33 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from gpsynth.export.c import to_c
+    from gpsynth.export.casadi_form import to_casadi
+    from gpsynth.export.control_form import to_control
     from gpsynth.export.folder import write
     from gpsynth.export.formula import to_text
     from gpsynth.export.latex import to_document, to_latex
     from gpsynth.export.python_form import to_python
     from gpsynth.export.sympy_form import SympyForm, to_sympy
 
-__all__ = ["SympyForm", "to_c", "to_document", "to_latex", "to_python", "to_sympy", "to_text", "write"]
+__all__ = [
+    "SympyForm",
+    "to_c",
+    "to_casadi",
+    "to_control",
+    "to_document",
+    "to_latex",
+    "to_python",
+    "to_sympy",
+    "to_text",
+    "write",
+]
 
 _MODULES = MappingProxyType(
     {
         "SympyForm": "sympy_form",
         "to_c": "c",
+        "to_casadi": "casadi_form",
+        "to_control": "control_form",
         "to_document": "latex",
         "to_latex": "latex",
         "to_python": "python_form",

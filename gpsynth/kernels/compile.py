@@ -13,7 +13,7 @@ from typing import Any, TypeVar, cast
 
 import numba
 from numba import types
-from numba.extending import intrinsic, overload
+from numba.extending import intrinsic, overload, register_jitable
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -36,6 +36,11 @@ def kernel(signature: Any) -> Callable[[Function], Function]:
         return machine_code
 
     return compiled
+
+
+def part(function: Function) -> Function:
+    """A part of kernels, compiled together with each of them."""
+    return register_jitable(error_model="numpy", forceinline=True)(function)
 
 
 def widest_vectors() -> None:

@@ -17,13 +17,18 @@ class Rows(NamedTuple):
     target: int  # n
     goal: int  # n
     time: int  # 1
-    slope: int  # s (n + 1), derivatives and running cost of each stage
+    sum: int  # n, the state at the end of a step as far as it is known
+    slope: int  # 2 n, the first and the last derivatives of a step
     alive: int  # 1, 1.0 while the lane runs
     arrival: int  # 1, s
     end: int  # 1, s
     diverged: int  # 1
     cost: int  # 1
     near: int  # 4, clearance, exposure, depth and one row of scratch
+    plant: int  # q, parameters of the plant
+    error: int  # n or 0, of the measured state
+    acting: int  # m or 0, controls that have arrived
+    past: int  # slots m, controls computed at the latest ticks
     parameter: int  # p, behind the programs that do not depend on the law
     total: int  # all rows
 
@@ -52,10 +57,20 @@ class Lanes(NamedTuple):
     ends: Floats  # (K, k) s, when a point stops being the target
 
 
+class Conditions(NamedTuple):
+    """What else differs from start to start; lengths of 0 where the problem knows no such thing."""
+
+    parameters: Floats  # (S, q) of the plant
+    delays: Ints  # (S,) or (0,) integration steps between a control and its effect
+    slots: int  # ticks that the longest delay spans, and one; 0 without delays
+    rest: Floats  # (m,) controls that act before the first command
+    noise: Floats  # (K, T, n) errors of the measured state
+    tables: Ints  # (S,) which table of noise each start has
+
+
 class Clock(NamedTuple):
     """The time grid and the Runge-Kutta tableau."""
 
-    a: Floats  # (s, s)
     b: Floats  # (s,)
     c: Floats  # (s,)
     step: float  # s
@@ -66,6 +81,7 @@ class Clock(NamedTuple):
     reach: (
         float  # distance at which a point counts as reached and the next is due at once; 0: dwell times alone
     )
+    bound: float  # of the running cost of a block's lanes together: beyond it the block ends, at a cost of infinity
 
 
 class World(NamedTuple):
@@ -81,7 +97,8 @@ _INTEGER, _NUMBER, _FLAG = types.int64, types.float64, types.boolean
 ROWS = types.NamedUniTuple(_INTEGER, len(Rows._fields), Rows)
 CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, INTEGERS, INTEGERS), Code)
 LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
-CLOCK = types.NamedTuple((MATRIX, VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER), Clock)
+CONDITIONS = types.NamedTuple((MATRIX, INTEGERS, _INTEGER, VECTOR, TENSOR, INTEGERS), Conditions)
+CLOCK = types.NamedTuple((VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER, _NUMBER), Clock)
 WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
 
 Group = TypeVar("Group", bound=tuple[Any, ...])

@@ -1,7 +1,8 @@
 """The lane machine: one instruction for a block of lanes, then the next.
 
 `execute` is the table of operations once more, as numba sees it: its numbers are the rows of `operations.OPERATIONS`.
-Each branch is a plain loop over lanes, which LLVM turns into vector instructions.
+Each branch is a loop over vectors of WIDTH lanes (`vectors.py`), so a workspace has a multiple of WIDTH columns, and
+what the columns behind the last lane hold is computed with and never read.
 """
 
 from typing import Any
@@ -10,214 +11,194 @@ import numpy as np
 from numba import types
 
 from gpsynth.arrays import Floats, Ints
-from gpsynth.kernels import arithmetic, exponentials, network_operator, trigonometry
-from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, OUT_MATRIX, VECTOR, kernel, widest_vectors
+from gpsynth.kernels import trigonometry
+from gpsynth.kernels.carried import on_vectors
+from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, OUT_MATRIX, VECTOR, kernel, part, widest_vectors
+from gpsynth.kernels.elementary import function_of
+from gpsynth.kernels.vectors import WIDTH, put, take
+from gpsynth.operations import OPERATIONS
 
 BLOCK = 64  # lanes; a workspace of some dozens of rows stays in the first-level cache
+SINE_AND_COSINE = len(OPERATIONS)  # of one operand, into two rows: d and b
+
+(  # the rows of the table in their order
+    add, sub, mul, div, div_protected, neg, abs_, half, double, square, cube, sqrt, sqrt_protected, floor,
+    sin, cos, tan, atan, atan2, asin, acos, exp, exp_protected, log, log_protected, tanh, cbrt, hypot, wrap,
+    max_, min_, lt, le, eq, not_, where, limit, sign, identity, nop_square, signed_sqrt, nop_inverse,
+    nop_exp, nop_log, tanh_half, step, sgn, nop_cube, nop_cbrt, clip_unit, signed_log1p, signed_expm1,
+    signed_decay, signed_saturation, minus_cube, sigmoid, step_open, sgn_dead_zone, circle, notch, nop_mul,
+    prob_sum, signed_hypot, signed_abs_sum, signed_abs_max,
+) = (on_vectors(function_of(row.name)) for row in OPERATIONS)  # fmt: skip
+sine_and_cosine = on_vectors(trigonometry.sine_and_cosine)
+
+
+@part
+def each1(function: Any, w: Any, lanes: int, d: int, a: int) -> None:
+    """Row d = function(row a)."""
+    for at in range(0, lanes, WIDTH):
+        put(w, d, at, function(take(w, a, at)))
+
+
+@part
+def each2(function: Any, w: Any, lanes: int, d: int, a: int, b: int) -> None:
+    """Row d = function(row a, row b)."""
+    for at in range(0, lanes, WIDTH):
+        put(w, d, at, function(take(w, a, at), take(w, b, at)))
+
+
+@part
+def each3(function: Any, w: Any, lanes: int, d: int, a: int, b: int, c: int) -> None:
+    """Row d = function(row a, row b, row c)."""
+    for at in range(0, lanes, WIDTH):
+        put(w, d, at, function(take(w, a, at), take(w, b, at), take(w, c, at)))
 
 
 @kernel(types.void(CODE, types.int64, types.int64, OUT_MATRIX, types.int64))
 def execute(code: Any, first: int, last: int, w: Any, lanes: int) -> None:
-    """Run instructions [first, last) of code (c, 5) = operation, destination row, operand rows, on columns of `w`."""
+    """Run instructions [first, last) of code (c, 5) = operation, destination row, operand rows, on columns of `w`.
+
+    `lanes` columns are computed, and those up to the next multiple of WIDTH, which `w` must have.
+    """
     widest_vectors()
-    for index in range(first, last):
+    for number in range(first, last):
+        index = np.uint64(number)  # never negative, so nobody needs to count from the end
         operation = code[index, 0]
         d, a, b, c = code[index, 1], code[index, 2], code[index, 3], code[index, 4]
         if operation == 0:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.add(w[a, lane], w[b, lane])
+            each2(add, w, lanes, d, a, b)
         elif operation == 1:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.sub(w[a, lane], w[b, lane])
+            each2(sub, w, lanes, d, a, b)
         elif operation == 2:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.mul(w[a, lane], w[b, lane])
+            each2(mul, w, lanes, d, a, b)
         elif operation == 3:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.div(w[a, lane], w[b, lane])
+            each2(div, w, lanes, d, a, b)
         elif operation == 4:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.div_protected(w[a, lane], w[b, lane])
+            each2(div_protected, w, lanes, d, a, b)
         elif operation == 5:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.neg(w[a, lane])
+            each1(neg, w, lanes, d, a)
         elif operation == 6:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.abs_(w[a, lane])
+            each1(abs_, w, lanes, d, a)
         elif operation == 7:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.half(w[a, lane])
+            each1(half, w, lanes, d, a)
         elif operation == 8:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.double(w[a, lane])
+            each1(double, w, lanes, d, a)
         elif operation == 9:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.square(w[a, lane])
+            each1(square, w, lanes, d, a)
         elif operation == 10:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.cube(w[a, lane])
+            each1(cube, w, lanes, d, a)
         elif operation == 11:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.sqrt(w[a, lane])
+            each1(sqrt, w, lanes, d, a)
         elif operation == 12:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.sqrt_protected(w[a, lane])
+            each1(sqrt_protected, w, lanes, d, a)
         elif operation == 13:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.floor(w[a, lane])
+            each1(floor, w, lanes, d, a)
         elif operation == 14:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.sin(w[a, lane])
+            each1(sin, w, lanes, d, a)
         elif operation == 15:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.cos(w[a, lane])
+            each1(cos, w, lanes, d, a)
         elif operation == 16:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.tan(w[a, lane])
+            each1(tan, w, lanes, d, a)
         elif operation == 17:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.atan(w[a, lane])
+            each1(atan, w, lanes, d, a)
         elif operation == 18:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.atan2(w[a, lane], w[b, lane])
+            each2(atan2, w, lanes, d, a, b)
         elif operation == 19:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.asin(w[a, lane])
+            each1(asin, w, lanes, d, a)
         elif operation == 20:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.acos(w[a, lane])
+            each1(acos, w, lanes, d, a)
         elif operation == 21:
-            for lane in range(lanes):
-                w[d, lane] = exponentials.exp(w[a, lane])
+            each1(exp, w, lanes, d, a)
         elif operation == 22:
-            for lane in range(lanes):
-                w[d, lane] = exponentials.exp_protected(w[a, lane])
+            each1(exp_protected, w, lanes, d, a)
         elif operation == 23:
-            for lane in range(lanes):
-                w[d, lane] = exponentials.log(w[a, lane])
+            each1(log, w, lanes, d, a)
         elif operation == 24:
-            for lane in range(lanes):
-                w[d, lane] = exponentials.log_protected(w[a, lane])
+            each1(log_protected, w, lanes, d, a)
         elif operation == 25:
-            for lane in range(lanes):
-                w[d, lane] = exponentials.tanh(w[a, lane])
+            each1(tanh, w, lanes, d, a)
         elif operation == 26:
-            for lane in range(lanes):
-                w[d, lane] = exponentials.cbrt(w[a, lane])
+            each1(cbrt, w, lanes, d, a)
         elif operation == 27:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.hypot(w[a, lane], w[b, lane])
+            each2(hypot, w, lanes, d, a, b)
         elif operation == 28:
-            for lane in range(lanes):
-                w[d, lane] = trigonometry.wrap(w[a, lane])
+            each1(wrap, w, lanes, d, a)
         elif operation == 29:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.max_(w[a, lane], w[b, lane])
+            each2(max_, w, lanes, d, a, b)
         elif operation == 30:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.min_(w[a, lane], w[b, lane])
+            each2(min_, w, lanes, d, a, b)
         elif operation == 31:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.lt(w[a, lane], w[b, lane])
+            each2(lt, w, lanes, d, a, b)
         elif operation == 32:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.le(w[a, lane], w[b, lane])
+            each2(le, w, lanes, d, a, b)
         elif operation == 33:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.eq(w[a, lane], w[b, lane])
+            each2(eq, w, lanes, d, a, b)
         elif operation == 34:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.not_(w[a, lane])
+            each1(not_, w, lanes, d, a)
         elif operation == 35:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.where(w[a, lane], w[b, lane], w[c, lane])
+            each3(where, w, lanes, d, a, b, c)
         elif operation == 36:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.limit(w[a, lane], w[b, lane], w[c, lane])
+            each3(limit, w, lanes, d, a, b, c)
         elif operation == 37:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.sign(w[a, lane])
+            each1(sign, w, lanes, d, a)
         elif operation == 38:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.identity(w[a, lane])
+            each1(identity, w, lanes, d, a)
         elif operation == 39:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.nop_square(w[a, lane])
+            each1(nop_square, w, lanes, d, a)
         elif operation == 40:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.signed_sqrt(w[a, lane])
+            each1(signed_sqrt, w, lanes, d, a)
         elif operation == 41:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.nop_inverse(w[a, lane])
+            each1(nop_inverse, w, lanes, d, a)
         elif operation == 42:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.nop_exp(w[a, lane])
+            each1(nop_exp, w, lanes, d, a)
         elif operation == 43:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.nop_log(w[a, lane])
+            each1(nop_log, w, lanes, d, a)
         elif operation == 44:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.tanh_half(w[a, lane])
+            each1(tanh_half, w, lanes, d, a)
         elif operation == 45:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.step(w[a, lane])
+            each1(step, w, lanes, d, a)
         elif operation == 46:
-            for lane in range(lanes):
-                w[d, lane] = arithmetic.sgn(w[a, lane])
+            each1(sgn, w, lanes, d, a)
         elif operation == 47:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.nop_cube(w[a, lane])
+            each1(nop_cube, w, lanes, d, a)
         elif operation == 48:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.nop_cbrt(w[a, lane])
+            each1(nop_cbrt, w, lanes, d, a)
         elif operation == 49:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.clip_unit(w[a, lane])
+            each1(clip_unit, w, lanes, d, a)
         elif operation == 50:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.signed_log1p(w[a, lane])
+            each1(signed_log1p, w, lanes, d, a)
         elif operation == 51:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.signed_expm1(w[a, lane])
+            each1(signed_expm1, w, lanes, d, a)
         elif operation == 52:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.signed_decay(w[a, lane])
+            each1(signed_decay, w, lanes, d, a)
         elif operation == 53:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.signed_saturation(w[a, lane])
+            each1(signed_saturation, w, lanes, d, a)
         elif operation == 54:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.minus_cube(w[a, lane])
+            each1(minus_cube, w, lanes, d, a)
         elif operation == 55:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.sigmoid(w[a, lane])
+            each1(sigmoid, w, lanes, d, a)
         elif operation == 56:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.step_open(w[a, lane])
+            each1(step_open, w, lanes, d, a)
         elif operation == 57:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.sgn_dead_zone(w[a, lane])
+            each1(sgn_dead_zone, w, lanes, d, a)
         elif operation == 58:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.circle(w[a, lane])
+            each1(circle, w, lanes, d, a)
         elif operation == 59:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.notch(w[a, lane])
+            each1(notch, w, lanes, d, a)
         elif operation == 60:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.nop_mul(w[a, lane], w[b, lane])
+            each2(nop_mul, w, lanes, d, a, b)
         elif operation == 61:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.prob_sum(w[a, lane], w[b, lane])
+            each2(prob_sum, w, lanes, d, a, b)
         elif operation == 62:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.signed_hypot(w[a, lane], w[b, lane])
+            each2(signed_hypot, w, lanes, d, a, b)
         elif operation == 63:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.signed_abs_sum(w[a, lane], w[b, lane])
+            each2(signed_abs_sum, w, lanes, d, a, b)
         elif operation == 64:
-            for lane in range(lanes):
-                w[d, lane] = network_operator.signed_abs_max(w[a, lane], w[b, lane])
+            each2(signed_abs_max, w, lanes, d, a, b)
+        elif operation == SINE_AND_COSINE:
+            for at in range(0, lanes, WIDTH):
+                sine, cosine = sine_and_cosine(take(w, a, at))
+                put(w, d, at, sine)
+                put(w, b, at, cosine)
 
 
 @kernel(types.void(CODE, INTEGERS, VECTOR, INTEGERS, MATRIX, MATRIX, types.int64, OUT_MATRIX))
@@ -266,5 +247,5 @@ def place(code: Ints, first: int, rows: Ints | None = None) -> Ints:
     placed = np.empty((len(code), 5), dtype=np.int32)
     placed[:, 0] = code[:, 0]
     placed[:, 1] = np.arange(first, first + len(code))
-    placed[:, 2:] = code[:, 1:] if rows is None else rows[code[:, 1:]]
+    placed[:, 2:] = code[:, 1:] if rows is None else np.where(code[:, 1:] < 0, 0, rows[code[:, 1:]])
     return placed

@@ -5,8 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from gpsynth.arrays import Floats, Ints, frozen
+from gpsynth.kernels.arrange import arrange
 from gpsynth.kernels.layout import Code, Rows, readonly
 from gpsynth.kernels.machine import place
+from gpsynth.operations import CODES, OPERATIONS
+
+ARITIES = frozen(np.array([operation.arity for operation in OPERATIONS], dtype=np.int32))
 
 
 class Instructions(NamedTuple):
@@ -20,9 +24,9 @@ class Instructions(NamedTuple):
 class Loop(NamedTuple):
     """The parts of a closed loop around its law, each reading what the ones before it give."""
 
-    features: Instructions  # of state and target; the law reads them and the parameters
+    features: Instructions  # of state, target and, if there is any, the state's error; the law reads them
     limits: Instructions  # of the law's outputs: the controls
-    rates: Instructions  # of state, controls, goal and time: derivatives and running cost
+    rates: Instructions  # of state, controls, goal, time and the plant's parameters: derivatives and running cost
     arrival: Instructions  # of state and goal: measure and terminal costs
 
 
@@ -32,9 +36,8 @@ class Frame(NamedTuple):
     rows: Rows
     features: Ints  # (f,) rows of the law's inputs
     before: Ints  # (., 5) instructions ahead of the law
-    after: Ints  # (., 5) instructions behind it
-    reads: Ints  # positions in `after`, flattened, of operands that are outputs of the law
-    outputs: Ints  # which output each of them is
+    after: Ints  # (., 5) instructions behind it; the negative operand -1 - k is the law's output k
+    kept: Ints  # rows of rates, arrival and controls
     code: Code  # without a law; `ends` counts from the law's last instruction
 
 
@@ -44,28 +47,41 @@ class _Placed(NamedTuple):
     outputs: Ints
 
 
-def rows_of(states: int, stages: int) -> Rows:
+class Extent(NamedTuple):
+    """How many rows a rollout needs beside its programs."""
+
+    states: int
+    plant: int = 0  # parameters of the plant
+    noise: bool = False
+    acting: int = 0  # controls that come late
+    slots: int = 0  # ticks whose controls are kept for that
+
+
+def rows_of(extent: Extent) -> Rows:
     """Where the quantities of a rollout stand; programs follow from row `total` on, parameters after them."""
-    sizes = (states, states, states, states, 1, stages * (states + 1), 1, 1, 1, 1, 1, 4)
+    states, late = extent.states, (extent.acting, extent.slots * extent.acting)
+    fixed = (states, states, states, states, 1, states, 2 * states, 1, 1, 1, 1, 1, 4)
+    sizes = (*fixed, extent.plant, states if extent.noise else 0, *late)
     first = np.concatenate(([0], np.cumsum(sizes))).tolist()
     return Rows(*first, *first[-1:])
 
 
-def frame(loop: Loop, *, states: int, stages: int, angles: Ints) -> Frame:
+def frame(loop: Loop, extent: Extent, angles: Ints) -> Frame:
     """The workspace of a closed loop and everything in it but the law; angles: (a,) states to be wrapped."""
-    rows = rows_of(states, stages)
+    rows, states = rows_of(extent), extent.states
     state, target, goal = (_range(first, states) for first in (rows.state, rows.target, rows.goal))
-    raw = -1 - _range(0, len(loop.limits.outputs))  # operands that `pack` replaces by the law's outputs
-    features, free = _placed(loop.features, np.concatenate((state, target)), rows.total)
+    error, plant = _range(rows.error, states if extent.noise else 0), _range(rows.plant, extent.plant)
+    raw = -1 - _range(0, len(loop.limits.outputs))  # the law's outputs, in `Frame.after`
+    features, free = _placed(loop.features, np.concatenate((state, target, error)), rows.total)
     limits, free = _placed(loop.limits, raw, free)
+    controls = _range(rows.acting, extent.acting) if extent.acting else limits.outputs
     rates, free = _placed(
-        loop.rates, np.concatenate((state, limits.outputs, goal, _range(rows.time, 1))), free
+        loop.rates, np.concatenate((state, controls, goal, _range(rows.time, 1), plant)), free
     )
+    rates, free = _apart(rates, state, free)
     arrival, free = _placed(loop.arrival, np.concatenate((state, goal)), free)
     parts = (features, limits, rates, arrival)
     after = np.concatenate((limits.code, rates.code, arrival.code))
-    operands = after.reshape(-1)
-    reads = np.flatnonzero(operands < 0)
     code = Code(
         instructions=features.code,
         ends=np.cumsum([len(part.code) for part in parts[1:]]).astype(np.int32),
@@ -77,24 +93,34 @@ def frame(loop: Loop, *, states: int, stages: int, angles: Ints) -> Frame:
         angles=frozen(angles),
     )
     placed = rows._replace(parameter=free, total=free)
-    outputs = (-1 - operands[reads]).astype(np.int32)
-    return Frame(placed, features.outputs, features.code, after, reads.astype(np.int32), outputs, code)
+    kept = frozen(np.concatenate((code.rates, code.arrival, code.controls)))
+    return Frame(placed, frozen(features.outputs), frozen(features.code), frozen(after), kept, code)
 
 
 def pack(around: Frame, law: Instructions, parameters: int) -> tuple[Rows, Code]:
     """The workspace and the code of the closed loop with this law."""
-    first = around.rows.parameter
-    inputs = np.concatenate((around.features, _range(first, parameters)))
-    placed, free = _placed(law, inputs, first + parameters)
-    after = around.after.copy()
-    after.reshape(-1)[around.reads] = placed.outputs[around.outputs]
-    code = around.code._replace(
-        instructions=readonly(np.concatenate((around.before, placed.code, after))),
-        ends=readonly(around.code.ends + np.int32(len(around.before) + len(placed.code))),
-        constant_rows=readonly(np.concatenate((around.code.constant_rows, placed.constant_rows))),
-        constants=readonly(np.concatenate((around.code.constants, law.constants))),
+    code, first = around.code, around.rows.parameter
+    constant_row = first + parameters
+    computed = constant_row + len(law.constants)
+    length = len(around.before) + len(law.code)
+    instructions = np.empty((length + len(around.after), 5), dtype=np.int32)
+    ends, moved = code.ends + np.int32(length), np.empty(computed + len(law.code), dtype=np.int32)
+    total = arrange(
+        *(around.before, law.code, law.outputs, around.after, around.features, first, computed),
+        *(around.kept, ARITIES, instructions, ends, moved),
     )
-    return around.rows._replace(total=free), code
+    places = readonly(moved[around.kept])
+    rates, arrival = len(code.rates), len(code.rates) + len(code.arrival)
+    return around.rows._replace(parameter=int(moved[first]) if parameters else 0, total=total), Code(
+        instructions=readonly(instructions[: ends[-1]]),
+        ends=readonly(ends),
+        constant_rows=readonly(np.concatenate((moved[code.constant_rows], moved[constant_row:computed]))),
+        constants=readonly(np.concatenate((code.constants, law.constants))),
+        rates=places[:rates],
+        arrival=places[rates:arrival],
+        controls=places[arrival:],
+        angles=code.angles,
+    )
 
 
 def _placed(part: Instructions, inputs: Ints, first: int) -> tuple[_Placed, int]:
@@ -104,6 +130,17 @@ def _placed(part: Instructions, inputs: Ints, first: int) -> tuple[_Placed, int]
     rows = np.concatenate((inputs, _range(first, free - first)))
     constant_rows = _range(first, len(part.constants))
     return _Placed(place(part.code, computed, rows), constant_rows, rows[part.outputs]), free
+
+
+def _apart(rates: _Placed, state: Ints, free: int) -> tuple[_Placed, int]:
+    """Derivatives that are states themselves, copied: a step writes the states one after the other."""
+    shared = np.flatnonzero(np.isin(rates.outputs, state))
+    copies = np.zeros((len(shared), 5), dtype=np.int32)
+    copies[:, 0] = CODES["identity"]
+    copies[:, 1], copies[:, 2] = _range(free, len(shared)), rates.outputs[shared]
+    outputs = rates.outputs.copy()
+    outputs[shared] = copies[:, 1]
+    return rates._replace(code=np.concatenate((rates.code, copies)), outputs=outputs), free + len(shared)
 
 
 def _range(first: int, count: int) -> Ints:

@@ -11,21 +11,36 @@ import numpy as np
 import numpy.typing as npt
 from numba import types
 
-from gpsynth.arrays import Floats
+from gpsynth.arrays import Floats, Ints
 from gpsynth.kernels import trigonometry
 from gpsynth.kernels.clearance import approach
-from gpsynth.kernels.compile import OUT_MATRIX, OUT_TENSOR, VECTOR, kernel, widest_vectors
-from gpsynth.kernels.layout import CLOCK, CODES, LANES, ROWS, WORLD, Clock, Code, Lanes, Rows, World
-from gpsynth.kernels.machine import execute
+from gpsynth.kernels.compile import OUT_MATRIX, OUT_TENSOR, kernel, part, widest_vectors
+from gpsynth.kernels.conditions import arrive, command, measure, settle
+from gpsynth.kernels.layout import (
+    CLOCK,
+    CODES,
+    CONDITIONS,
+    LANES,
+    ROWS,
+    WORLD,
+    Clock,
+    Code,
+    Conditions,
+    Lanes,
+    Rows,
+    World,
+)
+from gpsynth.kernels.machine import execute, wrap
+from gpsynth.kernels.vectors import WIDTH, choose, magnitude, put, take
 
 ARRIVAL, END, COST, CLEARANCE, EXPOSURE, DEPTH, DIVERGED, TERMINAL = range(8)  # columns of the result
 ENORMOUS = 1e10  # a state beyond it has diverged
 INSTANT = 1e-9  # s; a clock reading this close to a switching time has reached it
 
-_INTEGER, _NUMBER = types.int64, types.float64
+_INTEGER = types.int64
 
 
-@kernel(types.void(OUT_MATRIX, ROWS, CODES, LANES, _INTEGER, _INTEGER))
+@part
 def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int) -> None:
     """Set a block up: constants, and for lanes [first, first + count) start, goal, target and parameters."""
     w[:] = 0.0
@@ -45,7 +60,7 @@ def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int
         w[rows.near, lane] = np.inf
 
 
-@kernel(_NUMBER(OUT_MATRIX, ROWS, CODES, VECTOR, _INTEGER))
+@part
 def distance(w: Floats, rows: Rows, code: Code, point: Floats, lane: int) -> float:
     """Euclidean distance of a lane's state from `point` (n,), angles wrapped, in the units of the states."""
     square = 0.0
@@ -57,22 +72,7 @@ def distance(w: Floats, rows: Rows, code: Code, point: Floats, lane: int) -> flo
     return math.sqrt(square)
 
 
-@kernel(
-    types.void(
-        *(
-            OUT_MATRIX,
-            ROWS,
-            CODES,
-            LANES,
-            CLOCK,
-            types.int64[::1],
-            types.float64[::1],
-            _INTEGER,
-            _INTEGER,
-            _NUMBER,
-        )
-    )
-)
+@part
 def retarget(
     w: Floats,
     rows: Rows,
@@ -107,69 +107,104 @@ def retarget(
             w[rows.target + i, lane] = lanes.points[plan, due, i] if due < k else w[rows.goal + i, lane]
 
 
-@kernel(types.void(OUT_MATRIX, ROWS, CODES, CLOCK, _INTEGER, _INTEGER, _NUMBER))
-def advance(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, time: float) -> None:
-    """One Runge-Kutta step of states and running cost; lanes that have ended stay where they are."""
-    widest_vectors()
-    width, h = n + 1, clock.step
+@part
+def advance(
+    w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, time: float, bends: bool
+) -> None:
+    """One Runge-Kutta step of states and running cost; lanes that have ended stay where they are.
+
+    If `bends`, the first and the last derivatives of the step are kept in the rows from `slope` on.
+    """
+    first, last = code.ends[0] if clock.hold else 0, len(clock.b) - 1
     for i in range(n):
-        for lane in range(count):
-            w[rows.base + i, lane] = w[rows.state + i, lane]
-    first = code.ends[0] if clock.hold else 0
-    for stage in range(len(clock.b)):
-        for i in range(n if stage > 0 else 0):
-            state = rows.state + i
-            for lane in range(count):
-                w[state, lane] = w[rows.base + i, lane]
-            for earlier in range(stage):
-                if clock.a[stage, earlier] != 0.0:
-                    factor, k = h * clock.a[stage, earlier], rows.slope + earlier * width + i
-                    for lane in range(count):
-                        w[state, lane] += factor * w[k, lane]
-        now = time + clock.c[stage] * h
-        for lane in range(count):
-            w[rows.time, lane] = now
+        for lane in range(0, count, WIDTH):
+            state = take(w, rows.state + i, lane)
+            put(w, rows.base + i, lane, state)
+            put(w, rows.sum + i, lane, state)
+    for stage in range(last + 1):
+        for lane in range(0, count, WIDTH):
+            put(w, rows.time, lane, time + clock.c[stage] * clock.step)
         execute(code.instructions, first, code.ends[1], w, count)
-        for i in range(width):
-            slope, rate = rows.slope + stage * width + i, code.rates[i]
-            for lane in range(count):
-                w[slope, lane] = w[rate, lane]
+        if bends and stage == 0:
+            copy(w, code.rates, rows.slope, n, count)
+        if bends and stage == last:
+            copy(w, code.rates, rows.slope + n, n, count)
+        weight = clock.step * clock.b[stage]
+        for lane in range(0, count, WIDTH):
+            cost = take(w, rows.cost, lane)
+            moved = cost + weight * take(w, code.rates[n], lane)
+            put(w, rows.cost, lane, choose(take(w, rows.alive, lane) > 0.0, moved, cost))
+        if stage == last:
+            finish(w, rows, code, n, count, weight)
+        else:
+            proceed(w, rows, code, n, count, weight, clock.step * clock.c[stage + 1])
+
+
+@part
+def proceed(w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float, ahead: float) -> None:
+    """Add a stage's derivatives to the sum, and lead the state to the next stage."""
     for i in range(n):
-        for lane in range(count):
-            w[rows.state + i, lane] = w[rows.base + i, lane]
-    for stage in range(len(clock.b)):
-        factor = h * clock.b[stage]
-        for i in range(width):
-            total, k = (rows.state + i if i < n else rows.cost), rows.slope + stage * width + i
-            for lane in range(count):
-                moved = w[total, lane] + factor * w[k, lane]
-                w[total, lane] = moved if w[rows.alive, lane] > 0.0 else w[total, lane]
+        for lane in range(0, count, WIDTH):
+            rate = take(w, code.rates[i], lane)
+            put(w, rows.sum + i, lane, take(w, rows.sum + i, lane) + weight * rate)
+            put(w, rows.state + i, lane, take(w, rows.base + i, lane) + ahead * rate)
 
 
-@kernel(_INTEGER(OUT_MATRIX, ROWS, CODES, CLOCK, _INTEGER, _INTEGER, _NUMBER))
+@part
+def finish(w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float) -> None:
+    """Add the last stage's derivatives to the sum, which is the new state of the lanes that run."""
+    for i in range(n):
+        for lane in range(0, count, WIDTH):
+            end = take(w, rows.sum + i, lane) + weight * take(w, code.rates[i], lane)
+            base = take(w, rows.base + i, lane)
+            put(w, rows.state + i, lane, choose(take(w, rows.alive, lane) > 0.0, end, base))
+
+
+@part
+def copy(w: Floats, sources: Ints, first: int, n: int, count: int) -> None:
+    """Copy n rows to those from `first` on."""
+    for i in range(n):
+        for lane in range(0, count, WIDTH):
+            put(w, first + i, lane, take(w, sources[i], lane))
+
+
+@part
 def judge(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, time: float) -> int:
     """Mark the lanes that have arrived or diverged at `time`; the number of lanes still running."""
-    widest_vectors()
     execute(code.instructions, code.ends[1], code.ends[2], w, count)
+    for lane in range(0, count, WIDTH):
+        alive, diverged = take(w, rows.alive, lane), take(w, rows.diverged, lane)
+        runs = alive > 0.0
+        put(w, rows.end, lane, choose(runs, time, take(w, rows.end, lane)))
+        for i in range(n):
+            lost = choose(magnitude(take(w, rows.state + i, lane)) <= ENORMOUS, diverged, 1.0)
+            diverged = choose(runs, lost, diverged)
+        put(w, rows.diverged, lane, diverged)
+        alive = choose(diverged > 0.0, 0.0, alive)
+        arrival = take(w, rows.arrival, lane)
+        arrives = (alive > 0.0) & (take(w, code.arrival[0], lane) <= 0.0)
+        put(w, rows.arrival, lane, choose(arrives, choose(arrival > time, time, arrival), arrival))
+        put(w, rows.alive, lane, choose(arrives, 0.0 if clock.stop else 1.0, alive))
+    running = 0
     for lane in range(count):
-        w[rows.end, lane] = time if w[rows.alive, lane] > 0.0 else w[rows.end, lane]
-    for i in range(n):
-        for lane in range(count):
-            lost = (w[rows.alive, lane] > 0.0) & (not abs(w[rows.state + i, lane]) <= ENORMOUS)
-            w[rows.diverged, lane] = 1.0 if lost else w[rows.diverged, lane]
-    for lane in range(count):
-        w[rows.alive, lane] = 0.0 if w[rows.diverged, lane] > 0.0 else w[rows.alive, lane]
-    running, measure = 0, code.arrival[0]
-    for lane in range(count):
-        arrives = (w[rows.alive, lane] > 0.0) & (w[measure, lane] <= 0.0)
-        earliest = time if time < w[rows.arrival, lane] else w[rows.arrival, lane]
-        w[rows.arrival, lane] = earliest if arrives else w[rows.arrival, lane]
-        w[rows.alive, lane] = 0.0 if arrives & clock.stop else w[rows.alive, lane]
         running += 1 if w[rows.alive, lane] > 0.0 else 0
     return running
 
 
-@kernel(types.void(OUT_MATRIX, ROWS, CODES, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX))
+@part
+def hopeless(w: Floats, rows: Rows, bound: float, count: int) -> bool:
+    """Whether the lanes together cost more than `bound` already or one has diverged; then all of them cost infinity."""
+    total, lost = 0.0, 0.0
+    for lane in range(count):
+        total += w[rows.cost, lane]
+        lost += w[rows.diverged, lane]
+    if total <= bound and lost == 0.0:
+        return False
+    w[rows.cost, :] = np.inf
+    return True
+
+
+@part
 def store(w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, result: Floats) -> None:
     """Write the block's results, one row a lane; what diverged costs +inf."""
     q = len(code.arrival) - 1
@@ -186,7 +221,7 @@ def store(w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, res
             out[TERMINAL + q + i] = w[rows.state + i, lane]
 
 
-@kernel(types.void(OUT_MATRIX, ROWS, CODES, _INTEGER, _INTEGER, _INTEGER, _INTEGER, _NUMBER, OUT_TENSOR))
+@part
 def record(
     w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, period: int, time: float, trace: Floats
 ) -> None:
@@ -210,11 +245,16 @@ def workspace(rows: int, columns: int) -> Floats:
     return flat[skipped : skipped + rows * columns].reshape((rows, columns))
 
 
-@kernel(types.void(ROWS, CODES, LANES, CLOCK, WORLD, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX, OUT_TENSOR))
+@kernel(
+    types.void(
+        *(ROWS, CODES, LANES, CONDITIONS, CLOCK, WORLD, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX, OUT_TENSOR)
+    )
+)
 def roll(
     rows: Rows,
     code: Code,
     lanes: Lanes,
+    given: Conditions,
     clock: Clock,
     world: World,
     block: int,
@@ -228,14 +268,16 @@ def roll(
     `trace` (L, periods + 1, n + m + n) takes state, control and target at each tick unless its length is 0; what a
     lane does after its end is not recorded. The control at the last tick is the one that would be applied next.
     """
+    widest_vectors()
     n = lanes.starts.shape[1]
-    w = workspace(rows.total, block)
+    w = workspace(rows.total, -(-min(block, last - first) // WIDTH) * WIDTH)
     passed = np.empty(block, np.int64)
     shift = np.empty(block)
-    last_slope = rows.slope + (len(clock.b) - 1) * (n + 1)
+    bends = len(world.position) > 0
     for begin in range(first, last, block):
         count = min(block, last - begin)
         load(w, rows, code, lanes, begin, count)
+        settle(w, rows, lanes, given, begin, count)
         passed[:] = 0
         shift[:] = 0.0
         for period in range(clock.periods + 1):
@@ -243,23 +285,32 @@ def roll(
             if lanes.ends.shape[1] > 0:
                 retarget(w, rows, code, lanes, clock, passed, shift, begin, count, time)
             running = judge(w, rows, code, clock, n, count, time)
+            if clock.bound < np.inf and hopeless(w, rows, clock.bound, count):
+                break
+            if len(given.noise) > 0:
+                measure(w, rows, lanes, given, begin, count, period)
             if clock.hold or len(trace) > 0:
                 execute(code.instructions, 0, code.ends[0], w, count)
             if len(trace) > 0:
                 record(w, rows, code, n, begin, count, period, time, trace)
             if running == 0 or period == clock.periods:
                 break
+            if given.slots > 0:
+                command(w, rows, code, given, count, period)
             for substep in range(clock.substeps):
                 now = time + substep * clock.step
-                advance(w, rows, code, clock, n, count, now)
-                if len(world.position) > 0:
+                if given.slots > 0:
+                    step = period * clock.substeps + substep
+                    arrive(w, rows, lanes, given, begin, count, step, clock.substeps)
+                advance(w, rows, code, clock, n, count, now, bends)
+                if bends:
                     approach(
-                        *(w, count, rows.base, rows.state, rows.slope, last_slope, rows.alive, rows.near),
+                        *(w, count, rows.base, rows.state, rows.slope, rows.slope + n, rows.alive, rows.near),
                         *(world.position, world.circles, world.area, now, clock.step, world.margin),
                     )
             for k in range(len(code.angles)):
                 row = rows.state + code.angles[k]
-                for lane in range(count):
-                    wrapped = trigonometry.wrap(w[row, lane])
-                    w[row, lane] = wrapped if w[rows.alive, lane] > 0.0 else w[row, lane]
+                for lane in range(0, count, WIDTH):
+                    angle = take(w, row, lane)
+                    put(w, row, lane, choose(take(w, rows.alive, lane) > 0.0, wrap(angle), angle))
         store(w, rows, code, n, begin, count, result)

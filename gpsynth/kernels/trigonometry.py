@@ -64,6 +64,40 @@ def cos(a: float) -> float:
 
 
 @scalar
+def sine_and_cosine(a: float) -> tuple[float, float]:
+    """Both, bit for bit as `sin` and `cos` give them, from one reduction."""
+    x = abs(a)
+    shifted = x * PER_QUARTER + ROUND
+    n = shifted - ROUND
+    quadrant = bits_of(shifted)
+    near = (x - n * QUARTER_1) - n * QUARTER_2  # exact
+    r = near - n * QUARTER_3
+    r_rest = ((near - r) - n * QUARTER_3) - n * QUARTER_4
+    z = r * r
+    p = -7.57854031682011e-13
+    q = -1.1353281798241095e-11
+    p = p * z + 1.6058363165081574e-10
+    q = q * z + 2.087558213831528e-09
+    p = p * z + -2.5052104881849487e-08
+    q = q * z + -2.755731311738154e-07
+    p = p * z + 2.755731921406482e-06
+    q = q * z + 2.480158728409498e-05
+    p = p * z + -0.000198412698412548
+    q = q * z + -0.0013888888888862001
+    p = p * z + 0.008333333333333323
+    q = q * z + 0.04166666666666647
+    p = p * z + -0.16666666666666666
+    q = q * z + -0.5
+    sine_of_r = r + (r * z * p + r_rest)
+    cosine_of_r = 1.0 + (z * q + -r * r_rest)
+    odd = (quadrant & 1) != 0
+    sine = float_of(bits_of(cosine_of_r if odd else sine_of_r) ^ ((quadrant << 62) & SIGN))
+    cosine = float_of(bits_of(sine_of_r if odd else cosine_of_r) ^ (((quadrant + 1) << 62) & SIGN))
+    signed = float_of(bits_of(sine) ^ (bits_of(a) & SIGN))
+    return signed if x <= FARTHEST else NAN, cosine if x <= FARTHEST else NAN
+
+
+@scalar
 def tan(a: float) -> float:
     """Tangent; NaN if |a| > 1e8. In odd quarters it is -1 / tan(a - pi / 2)."""
     x = abs(a)

@@ -112,20 +112,20 @@ class Objective:
         """Arrival times (N,) between the control periods, so that the cost has no steps of one period.
 
         The arrival measure is taken as linear in the last period, whose beginning is found backwards along the rates
-        at its end. Where points are left as soon as they are reached, the target is not known, and the tick counts.
+        at its end. Where points are left as soon as they are reached, the target is not known, and under draws the
+        control that acts is not; then the tick counts.
         """
         times = rollouts.arrival[:, 0].copy()
         rows = np.flatnonzero(np.isfinite(times) & (times > 0.0))
-        if not len(rows) or self.settings.reach > 0.0:
-            return times
         problem, period = self.evaluator.problem, self.evaluator.problem.period
+        if not len(rows) or self.settings.reach > 0.0 or problem.draws is not None:
+            return times
         states, ends = rollouts.final[rows, 0], times[rows, np.newaxis]
         goals = np.broadcast_to(problem.goal, states.shape)
         due = np.sum(ends - period >= np.cumsum(dwell[rows], axis=1) - INSTANT, axis=1)
         targets = np.concatenate([points[rows], goals[:, np.newaxis]], axis=1)[np.arange(len(rows)), due]
-        rates = problem.rates(np.hstack([states, self.law(states, targets), goals, ends]))[
-            :, : states.shape[1]
-        ]
+        inputs = np.hstack([states, self.law(states, targets), goals, ends])
+        rates = problem.rates(inputs, problem.plant.nominal)[:, : states.shape[1]]
         after = problem.arrival(np.hstack([states, goals]))[:, 0]
         before = problem.arrival(np.hstack([states - period * rates, goals]))[:, 0]
         share = after / np.where(before > after, after - before, -np.inf)

@@ -1,6 +1,5 @@
 """`python -m tests.bench`: one table of times on one core, each beside references measured in the same run."""
 
-import json
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,12 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from gpsynth.arrays import Floats
-from gpsynth.builder import bind
-from gpsynth.encodings.network_operator_matrix import decode_matrix
-from gpsynth.encodings.network_operator_text import read_matrix
 from gpsynth.evaluate import Evaluator
-from gpsynth.program import Program
 from tests.bench.compiled import compile_setting
+from tests.bench.dense_network import NOM_461, network_rows
 from tests.bench.elementary import elementary_rows
 from tests.bench.fresh_plant import fresh_plant_row
 from tests.bench.measure import machine, median_time, pin
@@ -29,9 +25,9 @@ COMPILED = (
     ("C scalar, law compiled, own polynomials", "Own<1>", ()),
     ("C scalar, law compiled, libm", "Libm", ()),
 )
+BLOCKS = (16, 64, 128, 256, 512)
 RELATIVE = 1e-9
 LEAST_SHARE = 0.9  # laws that divide can chatter across a jump, where one rounding decides the path
-NOM_461 = Path(__file__).parents[3] / "shared" / "golden" / "nom_461.json"
 
 
 class Row(NamedTuple):
@@ -50,12 +46,15 @@ def main() -> None:
     print(
         f"closed loop: unicycle, RK4, {STEPS} steps, law at each stage; {LAWS} laws of {OPERATIONS_A_LAW} operations"
     )
-    rows = [*_compiled(case), *(_interpreted(case, block) for block in (32, 64, 128)), *_peers(case)]
+    rows = [*_compiled(case), *(_interpreted(case, block) for block in BLOCKS), *_peers(case)]
     _print(rows)
     if NOM_461.exists():
-        law = _published(case.problem.features.names)
-        row = _interpreted(case._replace(laws=(law,) * 8), 64)
-        print(f"{f'gpsynth, network operator NOM-461 ({law.complexity} operations)':56}{row.rate:12,.0f}")
+        law, found = network_rows(case)
+        print(
+            f"\n{f'network operator NOM-461, {law.complexity} operations, same loop':56}{'rollouts/s':>12}{'ratio':>9}"
+        )
+        for name, rate in found:
+            print(f"{name:56}{rate:12,.0f}{rate / found[0][1]:9.1f}")
     print(f"\n{'ns per element':56}{'gpsynth':>12}{'numpy':>9}{'ratio':>9}")
     for name, ours, theirs in elementary_rows():
         print(f"{name:56}{ours:12.2f}{theirs:9.2f}{theirs / ours:9.2f}")
@@ -73,7 +72,9 @@ def _compiled(case: Setting) -> Iterator[Row]:
 
 def _interpreted(case: Setting, block: int) -> Row:
     count = max(block, STARTS)
-    evaluator = Evaluator(unicycle(case.starts[:count]), block=block)
+    evaluator = Evaluator(
+        unicycle(case.starts[:count]), block=block
+    )  # as many starts as a block has lanes, or STARTS
     none = np.empty((1, 0))
     seconds, costs = median_time(lambda: [evaluator.of_program(law, none).cost[0] for law in case.laws])
     return Row(f"gpsynth, blocks of {block}", len(case.laws) * count / seconds, np.array(costs))
@@ -87,11 +88,6 @@ def _peers(case: Setting) -> Iterator[Row]:
         seconds, costs = median_time(lambda some=some, starts=starts: [roll(law, starts) for law in some])
         whole = np.array(costs) if count == STARTS else None
         yield Row(f"DEAP functions, numpy RK4, {count} starts at once", len(some) * count / seconds, whole)
-
-
-def _published(features: tuple[str, ...]) -> Program:
-    text = NOM_461.read_text()
-    return bind(decode_matrix(read_matrix(text), features, ("v", "omega")), json.loads(text)["q"])
 
 
 def _print(rows: list[Row]) -> None:

@@ -24,7 +24,7 @@ from gpsynth.optimizers import minimize
 from gpsynth.planning import plan
 from gpsynth.seeds import stream
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import batch_cost
+from gpsynth.synthesis import BatchCost
 from tests.bench.setting import setting
 
 SCENARIO = Path(__file__).parents[2] / "applications" / "rosbot" / "scenarios" / "paper.json"
@@ -61,7 +61,7 @@ def search() -> Iterator[str]:
         ("without lexicase", replace(whole, lexicase=0.0)),
         ("without either", replace(whole, tuned=0, lexicase=0.0)),
     ):
-        cost = batch_cost(Evaluator(problem), 2)
+        cost = BatchCost(problem, 2)
         costs = sorted(minimize(cost, chosen, seed=seed, budget=5000).cost for seed in SEEDS)
         yield f"{name:36} median cost {median(costs):6.2f} s, best {costs[0]:6.2f} s, worst {costs[-1]:6.2f} s"
 

@@ -25,6 +25,7 @@ BESIDE: dict[str, np.ufunc] = {
     "sqrt": np.sqrt,
     "hypot": np.hypot,
     "div": np.divide,
+    "add": np.add,
 }
 
 

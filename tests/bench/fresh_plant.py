@@ -7,12 +7,11 @@ import numpy as np
 
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
-from gpsynth.evaluate import Evaluator
 from gpsynth.optimizers import minimize
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import batch_cost
+from gpsynth.synthesis import BatchCost
 from tests.bench.measure import REPEATS
 
 STARTS = 8
@@ -45,7 +44,5 @@ def _first_generation(seed: int) -> int:
     problem = Problem(plant, starts, goal=(0.0, 0.0), tolerance=0.05, horizon=10.0, period=0.05)
     encoding = TreeEncoding(problem.features.names, plant.control_names, OPERATIONS, ParameterSpace(4))
     search = StructureSearch(encoding)
-    found = minimize(
-        batch_cost(Evaluator(problem), 1), search, seed=seed, budget=100_000, callback=lambda _: True
-    )
+    found = minimize(BatchCost(problem), search, seed=seed, budget=100_000, callback=lambda _: True)
     return found.evaluations

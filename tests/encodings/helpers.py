@@ -6,10 +6,15 @@ from collections.abc import Callable
 import numpy as np
 
 from gpsynth.encodings.cartesian import CartesianEncoding, CartesianGenome
-from gpsynth.encodings.network_operator import NetworkOperatorEncoding
+from gpsynth.encodings.columns import basic_columns
+from gpsynth.encodings.complete_tree import basic_tree
+from gpsynth.encodings.layers import basic_layers
 from gpsynth.encodings.network_operator_matrix import Matrix
 from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.rules import Rules
+from gpsynth.encodings.template import TemplateEncoding
 from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.operations import GP_NAMES, operation
 
 PLAIN = ("add", "sub", "mul", "square", "sin", "tanh")
@@ -18,17 +23,29 @@ UNARY = ("sin", "neg", "atan")
 NUMBERS = ParameterSpace(3, -4.0, 4.0)
 
 ENCODINGS = {
-    "network-operator": NetworkOperatorEncoding(("x", "y", "z"), ("u", "v"), space=NUMBERS),
-    "network-operator-gray": NetworkOperatorEncoding(("x", "y"), ("u",), NETWORK, NUMBERS, gray_bits=16),
-    "network-operator-no-numbers": NetworkOperatorEncoding(("x", "y"), ("u", "v"), NETWORK),
-    "network-operator-all": NetworkOperatorEncoding(
+    "network-operator": VariationalEncoding(("x", "y", "z"), ("u", "v"), space=NUMBERS),
+    "network-operator-gray": VariationalEncoding(("x", "y"), ("u",), NETWORK, NUMBERS, gray_bits=16),
+    "network-operator-no-numbers": VariationalEncoding(("x", "y"), ("u", "v"), NETWORK),
+    "network-operator-all": VariationalEncoding(
         ("x",),
         ("u",),
         (*NETWORK, "max", "min", "prob_sum", "signed_hypot", "signed_abs_max", "nop_exp"),
         NUMBERS,
         n_variations=20,
     ),
-    "network-operator-unary": NetworkOperatorEncoding(("x",), ("u",), UNARY),
+    "network-operator-unary": VariationalEncoding(("x",), ("u",), UNARY),
+    "layers": VariationalEncoding(
+        ("x", "y", "z"), ("u", "v"), NETWORK, NUMBERS, basic_layers(3, 3, 2, per_layer=2)
+    ),
+    "layers-no-numbers": VariationalEncoding(("x",), ("u",), NETWORK, basis=basic_layers(1, 0, 1)),
+    "complete-tree": VariationalEncoding(
+        ("x", "y", "z"), ("u", "v"), (*PLAIN, "max"), NUMBERS, basic_tree(3, 3, 2, (*PLAIN, "max"))
+    ),
+    "complete-tree-unary": VariationalEncoding(("x",), ("u",), UNARY, basis=basic_tree(1, 0, 1)),
+    "columns": VariationalEncoding(
+        ("x", "y", "z"), ("u", "v"), GP_NAMES, NUMBERS, basic_columns(3, 3, 2, operands=3)
+    ),
+    "columns-no-numbers": VariationalEncoding(("x",), ("u", "v"), PLAIN, basis=basic_columns(1, 0, 2)),
     "cartesian": CartesianEncoding(("x", "y", "z"), ("u", "v"), GP_NAMES, NUMBERS),
     "cartesian-rate": CartesianEncoding(
         ("x", "y"), ("u",), PLAIN, NUMBERS, columns=20, gene_rate=0.05, cut="one_point"
@@ -38,7 +55,43 @@ ENCODINGS = {
     "tree": TreeEncoding(("x", "y", "z"), ("u", "v"), GP_NAMES, NUMBERS),
     "tree-one-output": TreeEncoding(("x", "y"), ("u",), PLAIN, ParameterSpace(12, -4.0, 4.0)),
     "tree-no-numbers": TreeEncoding(("x",), ("u", "v"), PLAIN),
+    "tree-rules": TreeEncoding(
+        ("x", "y"),
+        ("u", "v"),
+        PLAIN,
+        NUMBERS,
+        rules=Rules(
+            forbid={"sin": ("sin", "tanh"), "tanh": ("square",)},
+            limits={"tanh": 1, "mul": 3},
+            weights={"sin": 4},
+        ),
+    ),
+    "tree-units": TreeEncoding(
+        ("x", "y", "phi"),
+        ("u", "v"),
+        PLAIN,
+        ParameterSpace(8, -4.0, 4.0),
+        units={"x": "m", "y": "m/s", "phi": "rad", "u": "m", "v": "m/s^2"},
+    ),
+    "tree-symmetries": TreeEncoding(
+        ("x", "y", "z"),
+        ("u", "v"),
+        GP_NAMES,
+        ParameterSpace(8, -4.0, 4.0),
+        symmetries={"x": "+-", "y": "--", "z": "-+", "u": "+-", "v": "-+"},
+    ),
+    "tree-symmetries-units": TreeEncoding(
+        ("x", "y"),
+        ("u",),
+        PLAIN,
+        ParameterSpace(8, -4.0, 4.0),
+        symmetries={"x": "-", "y": "+", "u": "-"},
+        units={"x": "m", "y": "s", "u": "m/s"},
+    ),
     "tree-unary": TreeEncoding(("x",), ("u",), UNARY, max_size=6),
+    "template": TemplateEncoding(
+        TreeEncoding(("x", "y"), ("g", "h"), PLAIN, NUMBERS), lambda f, g, h: (g, f.x * h), ("u", "v")
+    ),
 }
 
 

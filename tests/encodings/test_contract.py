@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from gpsynth.encodings.cartesian import CartesianEncoding
-from gpsynth.encodings.network_operator import NetworkOperatorEncoding
+from gpsynth.encodings.layers import basic_layers
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
+from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.errors import EncodingError
 from gpsynth.operations import GP_NAMES, OPERATIONS
 from gpsynth.seeds import stream
@@ -20,6 +21,11 @@ from tests.encodings.helpers import ENCODINGS, NETWORK, PLAIN
 @pytest.fixture(params=ENCODINGS, name="encoding")
 def _encoding(request):
     return ENCODINGS[request.param]
+
+
+def searched(encoding):
+    """The encoding that draws the genomes: that of the holes in a template."""
+    return getattr(encoding, "holes", encoding)
 
 
 def walk(encoding, steps, seed):
@@ -103,7 +109,7 @@ def test_wrong_parameters_are_named(encoding):
 
 
 def test_every_operation_offered_appears(encoding):
-    offered = set(encoding.operations) - {"identity"}
+    offered = set(searched(encoding).operations) - {"identity"}
     seen = set()
     for family in walk(encoding, 400, seed=12):
         for genome in family:
@@ -113,12 +119,20 @@ def test_every_operation_offered_appears(encoding):
     assert offered <= seen
 
 
-@pytest.mark.parametrize("name", [name for name in ENCODINGS if not name.startswith("network-operator")])
+WITH_A_BASIS = (
+    "network-operator",
+    "layers",
+    "complete-tree",
+    "columns",
+)  # which may have operations not offered
+
+
+@pytest.mark.parametrize("name", [name for name in ENCODINGS if not name.startswith(WITH_A_BASIS)])
 def test_nothing_appears_that_was_not_offered(name):
     encoding = ENCODINGS[name]
     for genome, *_ in walk(encoding, 100, seed=13):
         names = {OPERATIONS[code].name for code in encoding.decode(genome).code[:, 0]}
-        assert names <= set(encoding.operations)
+        assert names <= set(searched(encoding).operations)
 
 
 def test_crossover_mixes_both_parents(encoding):
@@ -128,7 +142,7 @@ def test_crossover_mixes_both_parents(encoding):
     assert any(child not in (a, b) for child in children) or encoding is ENCODINGS["cartesian-unary"]
 
 
-@pytest.mark.parametrize("name", ["network-operator", "cartesian", "cartesian-rate"])
+@pytest.mark.parametrize("name", [*WITH_A_BASIS, "cartesian", "cartesian-rate"])
 def test_equal_parents_have_equal_children(name):
     rng = stream(15)
     genome = ENCODINGS[name].random(rng)
@@ -146,11 +160,12 @@ def test_mutation_moves_numbers_and_structure_apart(encoding):
     for genome, *_ in walk(encoding, 50, seed=18):
         changed = encoding.mutate(genome, rng)
         same = encoding.decode(changed) == encoding.decode(genome)
-        assert same or changed.values == genome.values or isinstance(encoding, TreeEncoding)
+        assert same or changed.values == genome.values or isinstance(searched(encoding), TreeEncoding)
 
 
 SEARCHERS = {
-    "network-operator": NetworkOperatorEncoding(("x",), ("u",), NETWORK, ParameterSpace(2, -4, 4)),
+    "network-operator": VariationalEncoding(("x",), ("u",), NETWORK, ParameterSpace(2, -4, 4)),
+    "layers": VariationalEncoding(("x",), ("u",), NETWORK, ParameterSpace(2, -4, 4), basic_layers(1, 2, 1)),
     "cartesian": CartesianEncoding(("x",), ("u",), PLAIN, ParameterSpace(2, -4, 4), columns=20),
     "tree": TreeEncoding(("x",), ("u",), PLAIN, ParameterSpace(4, -4, 4)),
 }
@@ -187,7 +202,7 @@ def wrong(**changes):
     return {"inputs": ("x",), "outputs": ("u",), "operations": ("sin", "add"), **changes}
 
 
-@pytest.mark.parametrize("kind", [NetworkOperatorEncoding, CartesianEncoding, TreeEncoding])
+@pytest.mark.parametrize("kind", [VariationalEncoding, CartesianEncoding, TreeEncoding])
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [

@@ -14,7 +14,7 @@ from gpsynth.arrays import Floats
 from gpsynth.cli import run
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
-from gpsynth.synthesis import costs_of
+from gpsynth.objective import costs_of
 from tests.export.helpers import compiled, needs_compiler, same_bits
 
 pytestmark = pytest.mark.slow

@@ -8,6 +8,9 @@ import pytest
 
 from gpsynth.encodings.network_operator_matrix import decode_matrix
 from gpsynth.encodings.network_operator_text import read_matrix
+from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.variational import VariationalEncoding
+from gpsynth.seeds import stream
 
 FOLDER = Path(__file__).parents[2].parent / "shared" / "golden"
 LAWS = {"nom_461": 270, "nom_default": 264}
@@ -54,3 +57,17 @@ def test_the_published_pairs_are_reproduced(strict):
     x, u = (np.array(column) for column in zip(*PUBLISHED, strict=True))
     values = decode_matrix(read_matrix(text), strict=strict)(x, json.loads(text)["q"])
     assert np.all(np.abs(values - u) <= 1e-11 * np.abs(u))
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_published_law_can_be_the_basic_solution(name):
+    text = text_of(name)
+    matrix, q = read_matrix(text), json.loads(text)["q"]
+    encoding = VariationalEncoding(
+        ("x0", "x1", "x2"), ("u0", "u1"), space=ParameterSpace(3, 0.0, 16.0), basis=matrix
+    )
+    assert encoding.decode(encoding.basic(q)) == decode_matrix(matrix, strict=False)
+    neighbor = encoding.random(stream(1))
+    encoding.check(neighbor)
+    changed = np.count_nonzero(encoding.rebased(neighbor).basis.psi != matrix.psi)
+    assert 1 <= changed <= encoding.n_variations

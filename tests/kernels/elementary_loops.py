@@ -12,7 +12,10 @@ import numba
 import numpy as np
 
 from gpsynth.export.elementary_c import HEADERS, c_name, functions
+from gpsynth.kernels.carried import on_vectors
+from gpsynth.kernels.compile import widest_vectors
 from gpsynth.kernels.elementary import evaluate, function_of
+from gpsynth.kernels.vectors import WIDTH, put, take
 from gpsynth.operations import OPERATIONS, operation
 
 NAMES = tuple(row.name for row in OPERATIONS)
@@ -51,6 +54,30 @@ def numba_loop(name: str) -> Any:
 
     arity = operation(name).arity
     signature = numba.void(*[numba.float64[::1]] * (arity + 1))
+    return numba.njit(signature, error_model="numpy", nogil=True)((unary, binary, ternary)[arity - 1])
+
+
+@cache
+def vector_loop(name: str) -> Any:
+    """A jitted loop over vectors of lanes: row `arity` of its first argument receives the values."""
+    carried, arity = on_vectors(function_of(name)), operation(name).arity
+
+    def unary(w, lanes):
+        widest_vectors()
+        for at in range(0, lanes, WIDTH):
+            put(w, 1, at, carried(take(w, 0, at)))
+
+    def binary(w, lanes):
+        widest_vectors()
+        for at in range(0, lanes, WIDTH):
+            put(w, 2, at, carried(take(w, 0, at), take(w, 1, at)))
+
+    def ternary(w, lanes):
+        widest_vectors()
+        for at in range(0, lanes, WIDTH):
+            put(w, 3, at, carried(take(w, 0, at), take(w, 1, at), take(w, 2, at)))
+
+    signature = numba.void(numba.float64[:, ::1], numba.int64)
     return numba.njit(signature, error_model="numpy", nogil=True)((unary, binary, ternary)[arity - 1])
 
 

@@ -1,13 +1,16 @@
 """The lane machine against the scalar functions: its numbers are the table's, and lanes never see each other."""
 
 import itertools
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
-from gpsynth.arrays import Floats
+from gpsynth.arrays import Floats, frozen
 from gpsynth.builder import Builder
-from gpsynth.kernels import elementary, machine
+from gpsynth.kernels import elementary, machine, vectors
 from gpsynth.operations import OPERATIONS, Operation
 from gpsynth.program import Program
 
@@ -51,6 +54,43 @@ def test_every_operation_is_its_scalar_function_bit_for_bit(row: Operation) -> N
     found = machine.evaluate(code, np.empty(0), outputs, operands, np.empty((1, 0)))[:, 0]
     expected = np.array([elementary.evaluate(row.name, *values) for values in operands.tolist()])
     assert _same_bits(np.ascontiguousarray(found), expected)
+
+
+def test_sine_and_cosine_together_are_those_apart() -> None:
+    angles = np.concatenate(
+        (_operands(1, np.random.default_rng(4))[:, 0], [1e8, -1e8, np.nextafter(1e8, 1e9)])
+    )
+    w = np.zeros((3, -(-len(angles) // vectors.WIDTH) * vectors.WIDTH))
+    w[0, : len(angles)] = angles
+    machine.execute(
+        frozen(np.array([[machine.SINE_AND_COSINE, 1, 0, 2, 0]], dtype=np.int32)), 0, 1, w, len(angles)
+    )
+    for row, name in ((1, "sin"), (2, "cos")):
+        apart = np.array([elementary.evaluate(name, angle) for angle in angles.tolist()])
+        assert _same_bits(w[row, : len(angles)].copy(), apart)
+
+
+def test_without_the_compiler_the_machine_gives_the_same_bits() -> None:
+    code = (
+        "import numpy as np\n"
+        "from tests.kernels.test_machine import _program\n"
+        "rng = np.random.default_rng(8)\n"
+        "program = _program(rng)\n"
+        "with np.errstate(all='ignore'):\n"
+        "    found = program(rng.normal(size=(50, 3)), rng.normal(size=2))\n"
+        "print(np.where(np.isnan(found), np.nan, found).tobytes().hex())"
+    )
+    compiled, plain = (
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, **environment},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for environment in ({}, {"NUMBA_DISABLE_JIT": "1"})
+    )
+    assert compiled == plain
 
 
 def test_any_number_of_lanes_gives_the_same_bits() -> None:

@@ -1,7 +1,15 @@
 import numpy as np
 import pytest
 
-from applications.rosbot.model import STATES, features, reached, unicycle, wheel_coupled
+from applications.rosbot.model import (
+    FAMILY,
+    STATES,
+    dynamic_unicycle,
+    features,
+    reached,
+    unicycle,
+    wheel_coupled,
+)
 from gpsynth.tracing import trace
 
 POSES = [("x", tuple(STATES)), ("target", {name: f"{name}_target" for name in STATES})]
@@ -30,6 +38,28 @@ def test_coupled_wheels_leave_no_turning_at_full_speed():
     plant = wheel_coupled(10.0)
     rates = plant.dynamics(np.array([[0.0, 0.0, 0.0, 10.0, 10.0, 0.0], [0.0, 0.0, 0.0, 10.0, -10.0, 0.0]]))
     assert rates == pytest.approx(np.array([[10.0, 0.0, 0.0], [0.0, 0.0, 10.0]]))
+
+
+def test_the_dynamic_robot_follows_its_commands_within_its_accelerations():
+    plant = dynamic_unicycle()
+    assert plant.control_names == unicycle().control_names
+    assert plant.state_names[:3] == unicycle().state_names
+    # k_v, tau_v, a_v, k_omega, tau_omega, a_omega
+    vector = [0.99, 0.1, 1.2, 0.8, 0.2, 3.0]
+    near, far = [0.0, 0.0, 0.3, 0.4, -0.1, 0.45, -0.2, 0.0], [0.0, 0.0, 0.3, 0.4, -0.1, -0.5, 0.9, 0.0]
+    rates = plant.dynamics(np.array([near, far]), vector)
+    velocity = 0.4 * np.exp(0.3j)
+    followed = [(0.99 * 0.45 - 0.4) / 0.1, (0.8 * -0.2 + 0.1) / 0.2]
+    assert rates[0] == pytest.approx([velocity.real, velocity.imag, -0.1, *followed], abs=1e-15)
+    assert rates[1, 3:].tolist() == [-1.2, 3.0]
+    assert plant.parameters == dict(FAMILY)
+
+
+def test_turning_gains_are_those_of_skid_steer():
+    track, half_wheelbase = 0.192, 0.0525  # m, of Husarion's model
+    for separation, gain in [(0.192, 0.77), (0.186 * 1.45, 1.08)]:
+        theory = (separation / 2) * (track / 2) / ((track / 2) ** 2 + half_wheelbase**2)
+        assert theory == pytest.approx(gain, abs=0.006)
 
 
 def test_features_equal_complex_arithmetic():

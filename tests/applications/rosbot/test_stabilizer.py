@@ -1,12 +1,17 @@
 """Stage 1 of the ROSbot: the shipped law and a fresh one reach the goal from starts nobody trained on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from applications.rosbot.model import DELAY, dynamic_unicycle
 from applications.rosbot.stabilizer import default_law, poses, stabilization, synthesize_stabilizer
+from gpsynth.draws import Draws, crossed, random_draws
 from gpsynth.errors import EncodingError
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
+from gpsynth.simulation import simulate
 
 
 def arrivals(law: Law, count: int, *, period: float, box: float = 2.0) -> np.ndarray:
@@ -33,6 +38,39 @@ def test_the_shipped_law_stays_at_the_goal(box: float, period: float) -> None:
     final = Evaluator(problem, threads=2).of_program(law.program, law.parameters[np.newaxis]).final[0]
     measure = problem.arrival(np.hstack([final, np.zeros_like(final)]))[:, 0]
     assert np.all(measure <= 0.0)
+
+
+def test_the_shipped_law_drives_the_dynamic_robot_over_its_whole_family() -> None:
+    law, rng = default_law(), np.random.default_rng(12)
+    plant = dynamic_unicycle()
+    starts, draws = crossed(poses(rng, 50, 3.0), random_draws(plant, rng, 20, delay=DELAY))
+    problem = stabilization(starts, plant=plant, draws=draws, horizon=40.0)
+    rolled = Evaluator(problem, threads=2).of_program(law.program, law.parameters[np.newaxis])
+    assert np.all(np.isfinite(rolled.arrival))
+
+
+def test_a_law_is_carried_to_the_dynamic_robot_by_its_plant_and_features() -> None:
+    law, starts = default_law(), poses(np.random.default_rng(8), 3)
+    problem = stabilization(starts, plant=dynamic_unicycle(), draws=Draws(delay=[0.0, 0.05, 0.1]))
+    carried = replace(law, plant=problem.plant, features=problem.features)
+    rolled = Evaluator(problem).of_program(law.program, law.parameters[np.newaxis])
+    for row in range(3):
+        alone = simulate(problem, carried, row=row)
+        assert alone.arrival == rolled.arrival[0, row] < np.inf
+        assert alone.x[0].tolist() == [*starts[row], 0.0, 0.0]
+
+
+def test_steps_resolve_the_shortest_lag() -> None:
+    """At tau = 0.02 s, half the step moves no pose by as much as a millimeter in 3 s."""
+    law, plant, starts = default_law(), dynamic_unicycle(), poses(np.random.default_rng(3), 50)
+    quick = [[1.02, 0.02, 1.5, 0.6, 0.02, 4.0]] * len(starts)
+    rolled = []
+    for factor in (1, 2):
+        problem = stabilization(starts, plant=plant, draws=Draws(quick), horizon=3.0, stop=False)
+        finer = replace(problem, step=problem.step / factor)
+        rolled.append(Evaluator(finer).of_program(law.program, law.parameters[np.newaxis]).final[0])
+    assert problem.step == pytest.approx(0.01)
+    assert np.max(np.abs(rolled[0] - rolled[1])[:, :3]) < 1e-3
 
 
 def test_the_shipped_law_keeps_the_limits_and_rests_at_the_target() -> None:

@@ -3,15 +3,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from gpsynth.encodings.network_operator import (
-    ROBOT_OPERATIONS,
-    NetworkOperatorEncoding,
-    NetworkOperatorGenome,
-    rebase,
-)
 from gpsynth.encodings.network_operator_basis import basic_operator
-from gpsynth.encodings.network_operator_matrix import Matrix, decode_matrix
+from gpsynth.encodings.network_operator_matrix import ROBOT_OPERATIONS, Matrix, decode_matrix
 from gpsynth.encodings.parameters import ParameterSpace
+from gpsynth.encodings.variational import VariationalEncoding, VariationalGenome
 from gpsynth.encodings.variations import (
     ADD_EDGE,
     DELETE_EDGE,
@@ -39,7 +34,7 @@ PSI = np.array(
     ],
     dtype=np.int32,
 )
-ROBOT = NetworkOperatorEncoding(("dx", "dy", "dtheta"), ("u1", "u2"), space=ParameterSpace(3, 0.0, 16.0))
+ROBOT = VariationalEncoding(("dx", "dy", "dtheta"), ("u1", "u2"), space=ParameterSpace(3, 0.0, 16.0))
 
 
 @pytest.mark.parametrize(
@@ -81,13 +76,13 @@ def test_random_variations_keep_every_matrix_valid():
     for _ in range(100):
         psi = basis.psi
         for _ in range(40):
-            psi = vary(psi, (random_variation(psi, rng, tuple(range(1, 29)), tuple(range(1, 9))),))
+            psi = vary(psi, (random_variation(psi, (tuple(range(1, 29)), tuple(range(1, 9))), rng),))
         Matrix(psi, basis.inputs, basis.parameters, basis.outputs)  # raises if it is not
 
 
 def test_random_variations_are_of_every_kind_and_place():
     rng = stream(2)
-    drawn = {random_variation(PSI, rng, (4, 9), (1, 2)) for _ in range(3000)}
+    drawn = {random_variation(PSI, ((4, 9), (1, 2)), rng) for _ in range(3000)}
     assert {kind for kind, *_ in drawn} == {0, 1, 2, 3}
     assert {(row, column) for kind, row, column, _ in drawn if kind != REPLACE_BINARY} == {
         (row, column) for row in range(5) for column in range(row + 1, 5)
@@ -140,7 +135,7 @@ def test_programs_equal_the_varied_matrix_evaluated_by_the_rule(name):
     rng = stream(4)
     for _ in range(50):
         genome = encoding.random(rng)
-        matrix = rebase(encoding.basis, genome)
+        matrix = encoding.rebased(genome).basis
         x = rng.uniform(-1, 1, len(encoding.inputs))
         z = evaluate_matrix(
             matrix,
@@ -157,9 +152,7 @@ def test_programs_equal_the_varied_matrix_evaluated_by_the_rule(name):
 def test_a_new_basis_carries_the_structure_on():
     rng = stream(5)
     genome = ROBOT.random(rng)
-    epoch = NetworkOperatorEncoding(
-        ROBOT.inputs, ROBOT.outputs, space=ROBOT.space, basis=rebase(ROBOT.basis, genome)
-    )
+    epoch = ROBOT.rebased(genome)
     assert epoch.decode(epoch.basic(genome.values)) == ROBOT.decode(genome)
     assert epoch.basic(genome.values).values == genome.values
     assert ROBOT.decode(ROBOT.basic()) != ROBOT.decode(genome)
@@ -171,6 +164,30 @@ def test_each_variation_of_a_random_genome_changes_the_matrix():
         genome = ROBOT.random(rng)
         stages = [vary(ROBOT.basis.psi, genome.variations[:count]) for count in range(9)]
         assert not any(np.array_equal(a, b) for a, b in pairwise(stages))
+
+
+def test_trimming_keeps_the_first_variations():
+    genome = ROBOT.random(stream(11))
+    for count in range(9):
+        trimmed = ROBOT.trimmed(genome, count)
+        ROBOT.check(trimmed)
+        assert np.array_equal(
+            ROBOT.rebased(trimmed).basis.psi, vary(ROBOT.basis.psi, genome.variations[:count])
+        )
+        assert trimmed.values == genome.values
+
+
+@pytest.mark.parametrize("name", ["network-operator", "network-operator-gray", "network-operator-no-numbers"])
+def test_a_double_mutation_changes_one_variation_and_one_number(name):
+    encoding, rng = ENCODINGS[name], stream(12)
+    for _ in range(50):
+        genome = encoding.random(rng)
+        child = encoding.mutate_both(genome, rng)
+        encoding.check(child)
+        pairs = zip(genome.variations, child.variations, strict=True)
+        assert sum(a != b for a, b in pairs) <= 1
+        moved = sum(a != b for a, b in zip(genome.values, child.values, strict=True))
+        assert moved == min(1, len(genome.values))
 
 
 def test_four_children_share_out_structure_and_numbers():
@@ -213,7 +230,7 @@ def test_the_robot_set_is_the_published_one():
 )
 def test_wrong_settings_are_named(changes, sentence):
     with pytest.raises(EncodingError, match=sentence):
-        NetworkOperatorEncoding(("x",), ("u",), **changes)
+        VariationalEncoding(("x",), ("u",), **changes)
 
 
 @pytest.mark.parametrize(
@@ -231,13 +248,13 @@ def test_wrong_settings_are_named(changes, sentence):
     ],
 )
 def test_foreign_variations_are_refused(variation):
-    genome = NetworkOperatorGenome((variation, *ROBOT.basic().variations[1:]), (1.0, 1.0, 1.0))
+    genome = VariationalGenome((variation, *ROBOT.basic().variations[1:]), (1.0, 1.0, 1.0))
     with pytest.raises(EncodingError, match="variation 0 is"):
         ROBOT.check(genome)
 
 
 def test_foreign_genomes_are_refused():
     with pytest.raises(EncodingError, match="expected 8 variations, got 1"):
-        ROBOT.check(NetworkOperatorGenome((IDENTITY,), (1.0, 1.0, 1.0)))
+        ROBOT.check(VariationalGenome((IDENTITY,), (1.0, 1.0, 1.0)))
     with pytest.raises(EncodingError, match="expected 3 parameters"):
-        ROBOT.check(NetworkOperatorGenome(ROBOT.basic().variations, (1.0,)))
+        ROBOT.check(VariationalGenome(ROBOT.basic().variations, (1.0,)))

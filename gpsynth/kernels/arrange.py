@@ -1,0 +1,148 @@
+"""A law put into its closed loop: dead instructions left out, sines joined to cosines, rows used again.
+
+What an instruction writes is needed until its last use; then the row is free for another result. So a workspace stays
+in the first-level cache whatever the length of the code.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba import types
+
+from gpsynth.arrays import Ints
+from gpsynth.kernels.compile import CODE, INTEGERS, kernel, part
+from gpsynth.kernels.machine import SINE_AND_COSINE
+from gpsynth.operations import CODES
+
+_SINE, _COSINE = CODES["sin"], CODES["cos"]
+_INTEGER = types.int64
+_OUT_CODE, _OUT_INTEGERS = types.Array(types.int32, 2, "C"), types.Array(types.int32, 1, "C")
+
+
+@part
+def _row(stack: Any) -> Any:
+    """A free row."""
+    if stack[0] > 0:
+        stack[0] -= 1
+        return stack[2 + stack[0]]
+    stack[1] += 1
+    return stack[1] - 1
+
+
+@part
+def _release(code: Any, i: int, arities: Any, last: Any, moved: Any, stack: Any, first: int) -> None:
+    """Give the rows back that instruction i is the last to read."""
+    for k in range(2, 2 + arities[code[i, 0]]):
+        row = code[i, k]
+        if last[row] == i and moved[row] >= first:
+            last[row] = -1
+            stack[2 + stack[0]] = moved[row]
+            stack[0] += 1
+
+
+@part
+def _write(code: Any, i: int, end: int, last: Any, moved: Any, stack: Any, out: Any) -> None:
+    """Write instruction i; if it is a sine, together with the cosine of the same row in its part, or the reverse."""
+    moved[code[i, 1]] = _row(stack)
+    out[0], out[1] = code[i, 0], moved[code[i, 1]]
+    for k in range(2, 5):
+        out[k] = moved[code[i, k]]
+    if code[i, 0] in (_SINE, _COSINE):
+        for j in range(i + 1, end):
+            other, is_partner = code[j, 1], code[j, 0] == _SINE + _COSINE - code[i, 0]
+            if is_partner and code[j, 2] == code[i, 2] and last[other] >= 0 and moved[other] < 0:
+                moved[other] = _row(stack)
+                out[0], out[3] = SINE_AND_COSINE, moved[other]
+                if code[i, 0] == _COSINE:
+                    out[1], out[3] = out[3], out[1]
+                return
+
+
+@part
+def _operand(number: Any, inputs: Any, first: int) -> Any:
+    """The row of a value that has this number in the law."""
+    return inputs[number] if number < len(inputs) else first + number - len(inputs)
+
+
+@part
+def _whole(before: Any, law: Any, outputs: Any, after: Any, inputs: Any, first: int, computed: int) -> Any:
+    """The instructions in order, the law's operands being `inputs`, then rows from `first` on, its results `computed`.
+
+    A negative operand behind the law is an output of it: -1 the first.
+    """
+    begin, end = len(before), len(before) + len(law)
+    code = np.zeros((end + len(after), 5), np.int32)
+    code[:begin], code[end:] = before, after
+    for i in range(len(law)):
+        code[begin + i, 0], code[begin + i, 1] = law[i, 0], computed + i
+        for k in range(1, 4):
+            code[begin + i, 1 + k] = _operand(max(law[i, k], 0), inputs, first)
+    for i in range(end, len(code)):
+        for k in range(2, 5):
+            if code[i, k] < 0:
+                code[i, k] = _operand(outputs[-1 - code[i, k]], inputs, first)
+    return code
+
+
+@part
+def _last_uses(code: Any, kept: Any, arities: Any, rows: int) -> Any:
+    """(rows,) the instruction that reads a row for the last time; -1: nobody who matters."""
+    last = np.full(rows, -1, np.int32)
+    for row in kept:
+        last[row] = len(code)
+    for i in range(len(code) - 1, -1, -1):
+        if last[code[i, 1]] >= 0:
+            for k in range(2, 2 + arities[code[i, 0]]):
+                last[code[i, k]] = max(last[code[i, k]], i)
+    return last
+
+
+@kernel(
+    _INTEGER(
+        *(CODE, CODE, INTEGERS, CODE, INTEGERS, _INTEGER, _INTEGER, INTEGERS, INTEGERS),
+        *(_OUT_CODE, _OUT_INTEGERS, _OUT_INTEGERS),
+    )
+)
+def arrange(
+    before: Ints,
+    law: Ints,
+    outputs: Ints,
+    after: Ints,
+    inputs: Ints,
+    first: int,
+    computed: int,
+    kept: Ints,
+    arities: Ints,
+    out: Ints,
+    ends: Ints,
+    moved: Ints,
+) -> int:
+    """Write the shorter code into `out` and in `moved` where each row is now; the result is the number of rows.
+
+    before, after: (., 5) instructions around the law, which is (l, 4) with its outputs as in Program; its operands are
+    the rows `inputs`, then those from `first` on, its results those from `computed` on. kept: rows read from outside;
+    arities: of the operations. ends: of the parts, as counted before; they become what they are in `out`. Rows that no
+    instruction writes come first and in their order; rows of dropped results become -1.
+    """
+    code = _whole(before, law, outputs, after, inputs, first, computed)
+    last = _last_uses(code, kept, arities, len(moved))
+    moved[:] = 0
+    for i in range(len(code)):
+        moved[code[i, 1]] = -1
+    total = 0
+    for row in range(len(moved)):
+        if moved[row] == 0:
+            moved[row] = total
+            total += 1
+    stack = np.empty(len(code) + 2, np.int32)  # free rows, behind their number and that of all rows
+    stack[0], stack[1] = 0, total
+    begin = written = 0
+    for k in range(len(ends)):
+        for i in range(begin, ends[k]):
+            if last[code[i, 1]] >= 0:
+                _release(code, i, arities, last, moved, stack, total)
+                if moved[code[i, 1]] < 0:  # else it came with its partner
+                    _write(code, i, ends[k], last, moved, stack, out[written])
+                    written += 1
+        begin, ends[k] = ends[k], written
+    return int(stack[1])
