@@ -5,6 +5,7 @@ each variable, which is not counted. The budget is processor time, so the figure
 """
 
 import argparse
+import math
 import os
 import statistics
 import time
@@ -57,13 +58,14 @@ def operon(case: Case, seed: int, seconds: float) -> Outcome:
         max_length=50,
         generations=10**6,
         max_evaluations=10**9,
-        max_time=max(1, round(seconds)),
         n_threads=1,
-        random_state=seed,
+        warm_start=True,
     )
-    begin = time.process_time()
-    model.fit(inputs, y)
-    taken = time.process_time() - begin
+    begin, taken, parts = time.process_time(), 0.0, 0
+    while taken < 0.95 * seconds:  # max_time is by the clock on the wall, which a busy machine does not give us
+        model.set_params(max_time=math.ceil(seconds - taken), random_state=seed + 1000 * parts)
+        model.fit(inputs, y)
+        taken, parts = time.process_time() - begin, parts + 1
     return Outcome(_error(model.predict(test_inputs), expected), model.model_.Length, taken)
 
 
