@@ -62,7 +62,9 @@ def operon(case: Case, seed: int, seconds: float) -> Outcome:
         warm_start=True,
     )
     begin, taken, parts = time.process_time(), 0.0, 0
-    while taken < 0.95 * seconds:  # max_time is by the clock on the wall, which a busy machine does not give us
+    while (
+        taken < 0.95 * seconds
+    ):  # max_time is by the clock on the wall, which a busy machine does not give us
         model.set_params(max_time=math.ceil(seconds - taken), random_state=seed + 1000 * parts)
         model.fit(inputs, y)
         taken, parts = time.process_time() - begin, parts + 1
