@@ -1,4 +1,4 @@
-"""Every form of a law or program that leaves the package; numba, sympy, casadi and control load where they are needed."""
+"""Every form of a law or program that leaves the package; numba, sympy, casadi and control load when needed."""
 
 from importlib import import_module
 from types import MappingProxyType

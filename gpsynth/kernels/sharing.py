@@ -5,6 +5,7 @@ In an evolving population about three of every operator nodes are copies of anot
 
 from typing import Any
 
+import numpy as np
 from numba import types
 
 from gpsynth.kernels.bits import bits_of
@@ -62,12 +63,12 @@ def share(
     mask = len(table) - 1
     count = 0
     for t in range(len(ops)):
-        op = ops[t]
-        x = ids[a[t]] if op >= 0 else 0
-        y = ids[b[t]] if (op >= 0) & ((op <= DIV) | (op == MAX) | (op == MIN)) else 0
+        op = np.int64(ops[t])
+        x = np.int64(ids[a[t]] if op >= 0 else 0)
+        y = np.int64(ids[b[t]] if (op >= 0) & ((op <= DIV) | (op == MAX) | (op == MIN)) else 0)
         if ((op == ADD) | (op == MUL)) & (x > y):
             x, y = y, x
-        bits = bits_of(numbers[t]) if op == CONSTANT else 0
+        bits = np.int64(bits_of(numbers[t]) if op == CONSTANT else 0)
         mixed = (op * 0x1000003 + x) * _FIRST + (y + bits) * _SECOND
         place = ((mixed >> 29) ^ mixed ^ (mixed >> 47)) & mask
         while True:

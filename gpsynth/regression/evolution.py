@@ -67,29 +67,29 @@ class Scored(NamedTuple):
 
 def evolve(state: State) -> Iterator[None]:
     """Generation after generation, without end; the best go into the state's front."""
-    problem = Problem(state)
+    evolution = Evolution(state)
     y = plain(state.y)
     targets = [y, *derived(y, np.empty((len(state.y), 0)), state.functions)]
     while True:
-        population = problem.scored(problem.random(SIZE))
+        population = evolution.scored(evolution.random(SIZE))
         best, waited = np.inf, 0
         generation = 0
         while waited < PATIENCE and not state.done:
-            population = problem.next_generation(population)
+            population = evolution.next_generation(population)
             generation += 1
             least = float(population.error.min())
             waited = 0 if least < 0.99 * best else waited + 1
             best = min(best, least)
             if generation % REPORT == 0:
-                problem.report(population)
+                evolution.report(population)
             if generation % HARVEST == 0:
-                problem.harvest(population, targets)
+                evolution.harvest(population, targets)
             yield
-        problem.report(population)
+        evolution.report(population)
         yield
 
 
-class Problem:
+class Evolution:
     """The data and the grammar of one search."""
 
     def __init__(self, state: State) -> None:

@@ -6,6 +6,7 @@ Node rates count every node of every tree, leaves included, however often it occ
 import argparse
 from collections.abc import Callable, Iterator
 from importlib import metadata
+from importlib.util import find_spec
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,7 @@ from gpsynth.arrays import Floats
 from gpsynth.kernels import genomes
 from gpsynth.kernels.data_code import BINARY, CONSTANT, OPCODE, VARIABLE
 from gpsynth.kernels.layout import readonly
-from gpsynth.regression.evolution import Problem, Trees, evolve
+from gpsynth.regression.evolution import Evolution, Trees, evolve
 from gpsynth.regression.polish import data_of
 from gpsynth.regression.population import Population, columns_of, evaluate, share
 from gpsynth.regression.state import State
@@ -33,6 +34,8 @@ class Tree(NamedTuple):
 def main() -> None:
     """Measure and print."""
     argparse.ArgumentParser(description=__doc__).parse_args()
+    if find_spec("pyoperon") is None:
+        raise SystemExit("this comparison needs pyoperon: pip install pyoperon")
     pin()
     rng = np.random.default_rng(1)
     print(f"{machine()}, pyoperon {metadata.version('pyoperon')}")
@@ -167,11 +170,11 @@ def evolved_trees(rng: np.random.Generator, generations: int) -> list[Tree]:
     """A population of plain genetic programming: tournaments of 3, subtree crossover 0.9, one mutation in ten."""
     inputs = rng.uniform(0.5, 2.0, (100, VARIABLES))
     y = inputs[:, 0] * inputs[:, 1] / (1 + inputs[:, 2] ** 2) + inputs[:, 3] - inputs[:, 4]
-    problem = Problem(State(data_of(inputs, y, np.ones(len(y))), frozenset(ARITHMETIC), rng))
-    problem.grammar = problem.grammar._replace(unary=problem.grammar.unary[:0])
-    trees = problem.random(EVOLVING)
+    evolution = Evolution(State(data_of(inputs, y, np.ones(len(y))), frozenset(ARITHMETIC), rng))
+    evolution.grammar = evolution.grammar._replace(unary=evolution.grammar.unary[:0])
+    trees = evolution.random(EVOLVING)
     for _ in range(generations):
-        error = problem.scored(trees).error
+        error = evolution.scored(trees).error
         entrants = rng.integers(0, EVOLVING, (2, EVOLVING, 3))
         mates = np.take_along_axis(entrants, error[entrants].argmin(axis=2)[..., None], axis=2)[..., 0].T
         choices = rng.random((EVOLVING, genomes.CHOICES))
@@ -179,7 +182,7 @@ def evolved_trees(rng: np.random.Generator, generations: int) -> list[Tree]:
         empty = np.zeros_like(trees.ops), np.zeros_like(trees.numbers), np.zeros_like(trees.lengths)
         parents = trees.ops, trees.numbers, readonly(trees.lengths)
         chosen = readonly(np.ascontiguousarray(mates, dtype=np.int32))
-        genomes.vary(*problem.grammar, *parents, *parents, chosen, readonly(choices), *empty)
+        genomes.vary(*evolution.grammar, *parents, *parents, chosen, readonly(choices), *empty)
         trees = Trees(*empty)
     names = {code: name for name, code in OPCODE.items()}
     return [
@@ -196,14 +199,14 @@ def evolved_trees(rng: np.random.Generator, generations: int) -> list[Tree]:
 def genome_rate(rng: np.random.Generator) -> float:
     """Children made, shared, evaluated and scored in a second."""
     inputs = rng.uniform(-1, 1, (20, 1))
-    problem = Problem(_state(inputs, inputs[:, 0] ** 3 + inputs[:, 0]))
-    parents = problem.scored(problem.random(600))
+    evolution = Evolution(_state(inputs, inputs[:, 0] ** 3 + inputs[:, 0]))
+    parents = evolution.scored(evolution.random(600))
     for _ in range(5):
-        parents = problem.next_generation(parents)
+        parents = evolution.next_generation(parents)
 
     def work() -> None:
         for _ in range(20):
-            problem.scored(problem.children(parents))
+            evolution.scored(evolution.children(parents))
 
     return 20 * 600 / median_time(work)[0]
 
