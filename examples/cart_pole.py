@@ -8,15 +8,12 @@ J is the integral over 10 s of (5 |e|^2 + u^2) / 2, and |e(10)|^2 / 2. There the
 beyond what good laws use. Their linear law costs 16.2648 by Simpson's rule on samples 0.01 s apart, 16.2220 exactly.
 """
 
-from pathlib import Path
 from typing import Any
 
-import click
 import numpy as np
 
 import gpsynth as gs
-from gpsynth.cli import run
-from gpsynth.export import write
+from examples.command import Finding, command, start
 
 CART, POLE, LENGTH, GRAVITY = 0.1, 0.02, 0.1, -9.8  # kg, kg, m, m/s^2
 
@@ -59,21 +56,22 @@ space = gs.ParameterSpace(6)
 encoding = gs.TreeEncoding(problem.features.names, plant.control_names, operations, space, max_size=30)
 
 
-@click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--budget", default=40_000, show_default=True, help="Evaluations of the search.")
-@click.option("--tuning", default=2_000, show_default=True, help="Evaluations for each law of the front.")
-def main(folder: Path, budget: int, tuning: int) -> None:
-    """Find laws from scratch and write the best one's exports to FOLDER."""
+def found(seed: int, budget: int, tuning: int) -> Finding:
+    """What this seed finds."""
     rough = transfer(period=0.02, horizon=5.0)
     search = gs.StructureSearch(encoding, lexicase=0.0)  # with one start there are no specialists to choose
     result = gs.synthesize(
-        problem, encoding, seed=1, budget=budget, tuning=tuning, search=search, rough=rough
+        problem, encoding, seed=seed, budget=budget, tuning=tuning, search=search, rough=rough
     )
-    print(result.table())
-    for path in write(result.law, folder):
-        print(path)
+    return Finding(problem, {"law": result})
 
+
+main = command(
+    found,
+    budget=40_000,
+    tuning=2_000,
+    reference="published linear law 16.2648, by Simpson's rule",
+)
 
 if __name__ == "__main__":
-    raise SystemExit(run(main, name="cart_pole"))
+    start(main, "cart_pole")

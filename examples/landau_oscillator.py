@@ -8,14 +8,10 @@ on the cycle of the integral of r^2 + 0.01 b^2 over 63 s, |b| <= 1. The best cli
 b = 6.735 a1 - 6.080 a2 with J = 1.297; here the law is evaluated every 0.05 s and held in between.
 """
 
-from pathlib import Path
 from typing import Any
 
-import click
-
 import gpsynth as gs
-from gpsynth.cli import run
-from gpsynth.export import write
+from examples.command import Finding, command, start
 
 
 def oscillator(x: Any, u: Any) -> tuple[Any, Any]:
@@ -57,18 +53,19 @@ encoding = gs.TreeEncoding(
 )
 
 
-@click.command()
-@click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--budget", default=40_000, show_default=True, help="Evaluations of the search.")
-@click.option("--tuning", default=2_000, show_default=True, help="Evaluations for each law of the front.")
-def main(folder: Path, budget: int, tuning: int) -> None:
-    """Find laws from scratch and write the best one's exports to FOLDER."""
+def found(seed: int, budget: int, tuning: int) -> Finding:
+    """What this seed finds."""
     rough = oscillation(period=0.1, horizon=15.0)
-    result = gs.synthesize(problem, encoding, seed=1, budget=budget, tuning=tuning, rough=rough)
-    print(result.table())
-    for path in write(result.law, folder):
-        print(path)
+    result = gs.synthesize(problem, encoding, seed=seed, budget=budget, tuning=tuning, rough=rough)
+    return Finding(problem, {"law": result})
 
+
+main = command(
+    found,
+    budget=40_000,
+    tuning=2_000,
+    reference="best linear law 1.297, optimum 1.2826",
+)
 
 if __name__ == "__main__":
-    raise SystemExit(run(main, name="landau_oscillator"))
+    start(main, "landau_oscillator")

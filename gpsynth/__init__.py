@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gpsynth.encodings.variational import VariationalEncoding
     from gpsynth.epochs import Epochs
     from gpsynth.evaluate import Evaluator, Rollouts
+    from gpsynth.islands import Islands
     from gpsynth.law import Law
     from gpsynth.objective import Objective
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from gpsynth.simulation import Trajectory, simulate
     from gpsynth.structure_search import StructureSearch
     from gpsynth.synthesis import SynthesisResult, synthesize
-    from gpsynth.tracing import trace, where, wrap_angle
+    from gpsynth.tracing import inline, trace, where, wrap_angle
     from gpsynth.tradeoffs import Tradeoffs, synthesize_tradeoffs
     from gpsynth.units import UnitReport, check_units
     from gpsynth.variational_ga import VariationalGA
@@ -57,6 +58,7 @@ _HOME = {
     "VariationalEncoding": "encodings.variational",
     "Epochs": "epochs",
     "Evaluator": "evaluate",
+    "Islands": "islands",
     "Rollouts": "evaluate",
     "Law": "law",
     "Objective": "objective",
@@ -64,6 +66,7 @@ _HOME = {
     "NSGA2": "optimizers",
     "PSO": "optimizers",
     "DifferentialEvolution": "optimizers",
+    "inline": "tracing",
     "minimize": "optimizers",
     "Plan": "planning",
     "PlanSettings": "planning",
@@ -107,6 +110,7 @@ __all__ = [
     "Epochs",
     "Evaluator",
     "GpsynthError",
+    "Islands",
     "Law",
     "Objective",
     "Obstacles",
@@ -138,6 +142,7 @@ __all__ = [
     "check_units",
     "compose",
     "crossed",
+    "inline",
     "minimize",
     "plan",
     "random_draws",

@@ -1,9 +1,9 @@
 """Many searches side by side that merge two by two: luck at the start does not decide what is found in the end.
 
-A structure search settles early in one basin, and whether that is a good one shows after a few generations. So many
-islands get a small budget each, then half as many twice the population to choose from and the same budget for all of
-them together, until one is left: successive halving (Karnin, Koren & Somekh 2013; Jamieson & Talwalkar 2016), but
-what loses is merged, not thrown away. The best island merges with the worst, the second best with the second worst.
+A structure search settles early in one basin, and whether that is a good one shows after some generations. So many
+islands search for a while; then half as many, each merged of two, for as long again, until one is left: successive
+halving (Karnin, Koren & Somekh 2013; Jamieson & Talwalkar 2016), but what loses is merged, not thrown away. The best
+island merges with the worst, the second best with the second worst.
 """
 
 from collections.abc import Callable, Sequence
@@ -83,7 +83,7 @@ def search_islands(  # noqa: PLR0913 takes what `minimize` takes
     checkpoint: Callable[[Archipelago[Any]], None] | None = None,
     resume: Archipelago[Any] | None = None,
 ) -> Found:
-    """The search after all levels, each of which may spend an equal share of the budget (evaluations).
+    """The search after all levels, on each of which every island may spend the same share of the budget (evaluations).
 
     Islands run in `workers` processes through joblib, so `joblib.parallel_config(backend="dask")` sends them to a
     cluster; the same seed gives the same result wherever they run. `checkpoint`, `callback` and the progress bar hear
@@ -93,7 +93,7 @@ def search_islands(  # noqa: PLR0913 takes what `minimize` takes
     reason = "budget spent"
     with bar(budget, progress) as show:
         while now.level < islands.levels and not reason.startswith("stopped"):
-            share = (budget - now.evaluations) // ((islands.levels - now.level) * len(now.islands))
+            share = (budget - now.evaluations) // (2 * len(now.islands) - 1)
             tasks = [
                 joblib.delayed(minimize)(
                     *(cost, strategy),

@@ -68,6 +68,21 @@ def wrap_angle(angle: Any) -> Any:
     return program(angles.reshape(-1, 1)).reshape(angles.shape)[()]
 
 
+def inline(program: Program, values: Sequence[Any]) -> tuple[Symbol, ...]:
+    """The outputs of `program`, a law's `bounded` for one, where its inputs are traced values or numbers.
+
+    So a function that is traced may use what was found before. Raises TracingError if no value is traced, ProgramError
+    if their number is not that of the inputs, or the program has parameters.
+    """
+    known = next((value for value in values if isinstance(value, Symbol)), None)
+    if known is None:
+        raise TracingError(
+            f"inline takes traced values; got {values!r}; call the program with arrays instead"
+        )
+    references = [known.lifted(_scalar(value)).reference for value in values]
+    return tuple(Symbol(known.builder, output) for output in known.builder.inline(program, references))
+
+
 def input_names(group: Names) -> tuple[str, ...]:
     """The inputs that an argument stands for."""
     return tuple(_by_attribute(group).values())

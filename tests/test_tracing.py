@@ -9,7 +9,7 @@ import pytest
 from gpsynth.errors import TracingError
 from gpsynth.program import Program
 from gpsynth.seeds import stream
-from gpsynth.tracing import trace, where, wrap_angle
+from gpsynth.tracing import inline, trace, where, wrap_angle
 
 STATES = ("a", "b", "c")
 CONTROLS = ("u", "v")
@@ -315,3 +315,18 @@ def test_a_value_kept_from_another_run_is_an_error():
     trace(lambda x, u: kept.append(x.a) or x.a, ARGUMENTS)
     with pytest.raises(TracingError, match="another function's run"):
         trace(lambda x, u: x.b + kept[0], ARGUMENTS)
+
+
+def test_a_program_inlined_is_what_it_computes():
+    inner = trace(lambda p: (np.sin(p.a) + 2.0 * p.b, p.a * p.b), [("p", ("a", "b"))], ["sum", "product"])
+    outer = trace(lambda x, u: [value + x.a for value in inline(inner, [x.b, 3.0])], ARGUMENTS, ["y", "z"])
+    rows = stream(5).normal(size=(20, len(outer.inputs)))
+    a, b = rows[:, outer.inputs.index("a")], rows[:, outer.inputs.index("b")]
+    expected = inner(np.column_stack([b, np.full(20, 3.0)])) + a[:, None]
+    np.testing.assert_array_equal(outer(rows), expected)
+
+
+def test_inlining_without_a_traced_value_is_an_error():
+    inner = trace(lambda p: p.a, [("p", ("a",))])
+    with pytest.raises(TracingError, match=r"inline takes traced values; got \[1.0\]"):
+        inline(inner, [1.0])

@@ -28,7 +28,7 @@ from gpsynth.tracing import where, wrap_angle
 OPERATIONS = ("add", "sub", "mul", "min", "max", "abs", "square", "tanh", "sin", "cos", "atan")
 # all continuous, and no division: laws with sgn, atan2 or roots arrive as early, but chatter on the way
 POSITION, HEADING = 0.05, 0.1  # m, rad: tolerance of arrival
-SEARCH_BUDGET = 48_000  # parameter vectors
+SEARCH_BUDGET = 80_000  # parameter vectors
 ISLANDS = Islands(8)
 # The first sign: left and right change places. The second: the robot turns round, so that forward is backward. A law
 # without these symmetries can be good on its training; it reaches the goal by turning the same way all the time.

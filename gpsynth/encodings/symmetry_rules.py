@@ -90,6 +90,8 @@ class SymmetryRules:
 
         Each node comes with the name of its operation, the index of its input, or None for a number.
         """
+        if self._keeps([meaning for _, meaning in tree], output):
+            return list(tree)
         stack: list[Versions[tuple[Node, str | int | None]]] = []
         for node, meaning in reversed(tree):
             if isinstance(meaning, str):
@@ -98,6 +100,19 @@ class SymmetryRules:
             else:
                 stack.append({0 if meaning is None else self.inputs[meaning]: ((node, meaning),)})
         return list(stack[0].get(self.outputs[output], ()))
+
+    def _keeps(self, tree: Sequence[str | int | None], output: int) -> bool:
+        """Whether the whole tree has the signs of an output."""
+        stack: list[int] = []
+        for meaning in reversed(tree):
+            if isinstance(meaning, str):
+                signs = _signs(meaning, [stack.pop() for _ in range(operation(meaning).arity)])
+                if signs is None:
+                    return False
+                stack.append(signs)
+            else:
+                stack.append(0 if meaning is None else self.inputs[meaning])
+        return stack[0] == self.outputs[output]
 
 
 def _applied(node: Node, name: str, operands: Sequence[Versions[Node]]) -> Versions[Node]:

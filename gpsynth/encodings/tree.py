@@ -226,11 +226,11 @@ class TreeEncoding:
         nodes = [(node, self._meaning(node)) for node in tree]
         return gp.PrimitiveTree(self._constraints.obeying(nodes, output, factor))
 
-    def _lawful(self, genome: TreeGenome) -> bool:
-        """Whether the trees keep to rules, symmetries and units."""
+    def _lawful(self, genome: TreeGenome, only: int | None = None) -> bool:
+        """Whether the trees, or that of one output, keep to rules, symmetries and units."""
         if not self._constraints.restrict:
             return True
-        trees = enumerate(self.to_deap(genome))
+        trees = [(k, tree) for k, tree in enumerate(self.to_deap(genome)) if only in (None, k)]
         return all(len(self._obeying(tree, output)) == len(tree) for output, tree in trees)
 
     def _meaning(self, node: gp.Primitive | gp.Terminal) -> Meaning:
@@ -283,7 +283,7 @@ class TreeEncoding:
         trees[index] = self._obeying(trees[index], index)
         child = self._read(trees, rng)
         fits = self._fits(trees[index]) and len(child.values) <= self.space.count
-        return child if fits and self._lawful(child) else parent
+        return child if fits and self._lawful(child, index) else parent
 
     def _read(self, trees: list[gp.PrimitiveTree], rng: np.random.Generator) -> TreeGenome:
         """The genome of DEAP's trees; new numbers are drawn, or become inputs where there are enough of them."""

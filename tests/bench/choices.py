@@ -15,16 +15,9 @@ import numpy as np
 
 from applications.rosbot.experiments import experiment
 from applications.rosbot.scenario_file import read_scenario
-from applications.rosbot.stabilizer import OPERATIONS, poses, stabilization
-from gpsynth.encodings.parameters import ParameterSpace
-from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.evaluate import Evaluator, instructions
 from gpsynth.kernels.pack import pack
-from gpsynth.optimizers import minimize
 from gpsynth.planning import plan
-from gpsynth.seeds import stream
-from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import BatchCost
 from tests.bench.setting import setting
 
 SCENARIO = Path(__file__).parents[2] / "applications" / "rosbot" / "scenarios" / "paper.json"
@@ -45,25 +38,6 @@ def rounds() -> Iterator[str]:
             found = [plan(case.problem, case.law, chosen, seed=seed, threads=2) for seed in SEEDS]
         times = sorted(each.arrival_time if each.is_free else np.inf for each in found)
         yield f"{name:36} median {median(times):6.3f} s, best {times[0]:6.3f} s, worst {times[-1]:6.3f} s"
-
-
-def search() -> Iterator[str]:
-    """Cost after 5000 evaluations of stage 1 on 16 starts: the search as it is, and without some of its parts."""
-    problem = stabilization(poses(stream(1, 7), 16), period=0.1, method="euler")
-    space = ParameterSpace(8, -10.0, 10.0)
-    encoding = TreeEncoding(
-        problem.features.names, problem.plant.control_names, OPERATIONS, space, max_size=20
-    )
-    whole = StructureSearch(encoding)
-    for name, chosen in (
-        ("lexicase and CMA-ES", whole),
-        ("without CMA-ES", replace(whole, tuned=0)),
-        ("without lexicase", replace(whole, lexicase=0.0)),
-        ("without either", replace(whole, tuned=0, lexicase=0.0)),
-    ):
-        cost = BatchCost(problem, 2)
-        costs = sorted(minimize(cost, chosen, seed=seed, budget=5000).cost for seed in SEEDS)
-        yield f"{name:36} median cost {median(costs):6.2f} s, best {costs[0]:6.2f} s, worst {costs[-1]:6.2f} s"
 
 
 def packing() -> Iterator[str]:
@@ -101,7 +75,7 @@ def _microseconds(work: Callable[[], object], repeats: int = 15) -> float:
     return 1e6 * median(times)
 
 
-CHOICES = MappingProxyType({"rounds": rounds, "search": search, "packing": packing})
+CHOICES = MappingProxyType({"rounds": rounds, "packing": packing})
 
 if __name__ == "__main__":
     for name in sys.argv[1:] or CHOICES:

@@ -95,9 +95,12 @@ def costs(problem: gs.Problem, search: Callable[[Names], Any], seeds: int, budge
     return found
 
 
-def chances(found: dict[str, list[float]]) -> dict[str, float]:
-    """How likely such a difference from the best median is if there is none, corrected for their number (Holm 1979)."""
-    best = min(found, key=lambda name: median(found[name]))
+def chances(found: dict[str, list[float]], reference: str | None = None) -> dict[str, float]:
+    """How likely so large a difference is by chance, corrected for their number (Holm 1979).
+
+    From the runs called `reference`, or from those of the best median.
+    """
+    best = reference or min(found, key=lambda name: median(found[name]))
     raw = {name: mannwhitneyu(found[best], runs).pvalue for name, runs in found.items() if name != best}
     corrected, least = {best: 1.0}, 0.0
     for rank, name in enumerate(sorted(raw, key=raw.__getitem__)):

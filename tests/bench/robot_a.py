@@ -9,6 +9,7 @@ least 0.09: f1 cannot be below 3.78 there for a law that arrives 42 times.
 import argparse
 import itertools
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
@@ -25,6 +26,11 @@ STARTS = list(
 OPERATIONS = ("add", "sub", "mul", "neg", "sgn", "signed_sqrt", "tanh", "sin", "atan")
 NEAR = 0.1  # largest error at which the robot counts as there, and its wheels stop
 BUDGET = 80_000
+ISLANDS = gs.Islands(8)
+# The first sign: left and right change places. The second: the robot drives backward.
+SYMMETRIES = MappingProxyType(
+    {"error_x": "+-", "error_y": "--", "error_theta": "-+", "forward": "+-", "turn": "-+"}
+)
 
 
 def robot(x, u):
@@ -63,13 +69,19 @@ def problem(step: float) -> gs.Problem:
     )
 
 
+def encoding() -> gs.TemplateEncoding:
+    """Laws for both wheels made of one for going forward and one for turning, which have symmetries."""
+    names = problem(0.01).features.names, ("forward", "turn")
+    trees = gs.TreeEncoding(
+        *(*names, OPERATIONS, gs.ParameterSpace(10, -20.0, 20.0)), max_size=30, symmetries=SYMMETRIES
+    )
+    return gs.TemplateEncoding(trees, lambda e, forward, turn: (forward + turn, forward - turn), ("u1", "u2"))
+
+
 def synthesized(seed: int, budget: int) -> SynthesisResult:
     """Searched with the published step, scored with the finer one too."""
-    coarse = problem(0.01)
-    encoding = gs.TreeEncoding(
-        coarse.features.names, ("u1", "u2"), OPERATIONS, gs.ParameterSpace(10, -20.0, 20.0), max_size=30
-    )
-    return gs.synthesize(coarse, encoding, seed=seed, budget=budget, tuning=1_000, trials=[problem(0.001)])
+    settings = {"seed": seed, "budget": budget, "tuning": 1_000, "islands": ISLANDS}
+    return gs.synthesize(problem(0.01), encoding(), trials=[problem(0.001)], **settings)
 
 
 def functionals(program: gs.Program, parameters: Floats, step: float) -> tuple[float, float, int]:

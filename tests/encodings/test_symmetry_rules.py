@@ -32,7 +32,7 @@ def _breaks(program, values, inputs):
 
 
 @pytest.mark.parametrize(
-    "operations", [GP_NAMES, ("add", "sub", "mul", "atan2", "where", "lt", "hypot", "signed_hypot")]
+    "operations", [GP_NAMES, ("add", "sub", "mul", "where", "lt", "hypot", "tanh", "cube")]
 )
 def test_all_formulas_keep_the_symmetries(operations):
     encoding, rng = _encoding(operations), stream(1)

@@ -57,7 +57,7 @@ def test_a_formula_whose_units_do_not_fit_is_refused():
         ("x", "y"), ("u",), ("add", "mul"), ParameterSpace(2), units={"x": "m", "y": "s", "u": "m"}
     )
     encoding.from_program(trace(lambda f: f.x + 2.0 * f.y, [("f", ("x", "y"))], ("u",)))
-    with pytest.raises(EncodingError, match="the units of the trees do not fit"):
+    with pytest.raises(EncodingError, match="do not keep the symmetries or units"):
         encoding.from_program(trace(lambda f: f.x + f.y, [("f", ("x", "y"))], ("u",)))
 
 
