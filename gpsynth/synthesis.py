@@ -41,6 +41,7 @@ G = TypeVar("G")
 
 SEARCH, TUNING = 1, 2  # stages of the random streams
 MERIT = 1e-3  # share of the cost that a larger law of the front must save
+TIE = 0.005  # of the share of starts that end at the goal: what the starts drawn can decide as well
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +70,11 @@ class SynthesisResult:
 
     @property
     def best(self) -> FrontEntry:
-        """The entry of least cost among those that end at the goal from most starts."""
-        return min(self.front, key=lambda entry: (-entry.reached, entry.cost))
+        """The entry of least cost among those that end at the goal from most starts, or from hardly fewer (TIE)."""
+        most = max(entry.reached for entry in self.front)
+        return min(
+            (entry for entry in self.front if entry.reached >= most - TIE), key=lambda entry: entry.cost
+        )
 
     @property
     def law(self) -> Law:
@@ -127,6 +131,7 @@ def synthesize(
     guesses: Sequence[Guess] = (),
     objective: Objective | Function | None = None,
     rough: Problem | None = None,
+    tuned: Problem | None = None,
     trials: Sequence[Problem] = (),
     islands: Islands | None = None,
     folder: str | os.PathLike[str] | None = None,
@@ -138,9 +143,10 @@ def synthesize(
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
     An evaluation is one parameter vector of one formula rolled out from all starts. The search may use a `rough`
-    problem (fewer starts, longer steps); every law of the front is tuned on `problem` itself, with at most `tuning`
-    evaluations. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps,
-    another plant), which no search has seen, so that a law that only fits its training loses.
+    problem (fewer starts, longer steps). Every law of the front is tuned on `problem` itself, or on the problem
+    `tuned`, with at most `tuning` evaluations. The front that comes back is scored on `problem` and on all `trials`
+    (other starts, shorter steps, another plant), which no search has seen, so that a law that only fits its training
+    loses.
 
     The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. An `objective`, a
     function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With a `folder`
@@ -176,11 +182,12 @@ def synthesize(
     )
     tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
+    tuner = Evaluator(tuned or problem)
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
         number, individual = numbered
         values = _tuned(
-            evaluators[0], encoding.space, individual, wanted, seed=seed, budget=tuning, path=(TUNING, number)
+            tuner, encoding.space, individual, wanted, seed=seed, budget=tuning, path=(TUNING, number)
         )
         return _entry(evaluators, individual.program, values, wanted)
 
