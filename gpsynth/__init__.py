@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     from gpsynth.problem import Obstacles, Problem
     from gpsynth.program import Program
     from gpsynth.refitting import refit
+    from gpsynth.regression.entry import regress
+    from gpsynth.regression.estimator import SymbolicRegressor
+    from gpsynth.regression.result import RegressionResult
     from gpsynth.schedule import Schedule
     from gpsynth.seeds import stream
     from gpsynth.simulation import Trajectory, simulate
@@ -72,6 +75,9 @@ _HOME = {
     "Obstacles": "problem",
     "Problem": "problem",
     "Program": "program",
+    "RegressionResult": "regression.result",
+    "SymbolicRegressor": "regression.estimator",
+    "regress": "regression.entry",
     "refit": "refitting",
     "Schedule": "schedule",
     "stream": "seeds",
@@ -114,12 +120,14 @@ __all__ = [
     "Plant",
     "Problem",
     "Program",
+    "RegressionResult",
     "Robustness",
     "Rollouts",
     "Rules",
     "Schedule",
     "Stress",
     "StructureSearch",
+    "SymbolicRegressor",
     "SynthesisResult",
     "TemplateEncoding",
     "Tradeoffs",
@@ -139,6 +147,7 @@ __all__ = [
     "plan",
     "random_draws",
     "refit",
+    "regress",
     "simplify",
     "simulate",
     "stream",

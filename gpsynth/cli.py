@@ -339,7 +339,9 @@ def _described(entry: "FrontEntry") -> dict[str, Any]:
         "complexity": entry.complexity,
         "cost": entry.cost,
         "reached": entry.reached,
+        "reached_at_least": entry.reached_at_least,
         "median_time": entry.median_time if entry.reached > 0.0 else None,  # s
+        "worst_time": entry.worst_time if entry.reached > 0.0 else None,  # s
         "law": entry.law.to_dict(),
     }
 

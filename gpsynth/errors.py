@@ -45,6 +45,10 @@ class OptimizerError(GpsynthError):
     """Settings of an optimizer that contradict each other."""
 
 
+class RegressionError(GpsynthError):
+    """Data or settings of a symbolic regression that do not fit together."""
+
+
 class ScenarioError(GpsynthError):
     """A planning scenario that is malformed or contradicts itself."""
 

@@ -27,6 +27,7 @@ from gpsynth.optimizers import CMAES, Progress, minimize
 from gpsynth.plotting import plot_front
 from gpsynth.problem import Problem
 from gpsynth.program import Program
+from gpsynth.proportions import lower_bound
 from gpsynth.refitting import improved, mean_cost
 from gpsynth.runs import INTERRUPTED, checkpoint_in, run_search
 from gpsynth.structure_search import Candidate, Individual, StructureSearch
@@ -40,6 +41,7 @@ G = TypeVar("G")
 
 SEARCH, TUNING = 1, 2  # stages of the random streams
 MERIT = 1e-3  # share of the cost that a larger law of the front must save
+TIE = 0.005  # of the share of starts that end at the goal: what the starts drawn can decide as well
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +53,10 @@ class FrontEntry:
     complexity: int  # instructions of the formula
     reached: float  # share of the starts that are at the goal at the end
     median_time: float  # s, of the arrivals
+    worst_time: float  # s, of the arrivals
+    reached_at_least: (
+        float | None
+    )  # what the probability is at least, at 95 %, by the worst trial; without trials None
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +70,11 @@ class SynthesisResult:
 
     @property
     def best(self) -> FrontEntry:
-        """The entry of least cost among those that end at the goal from most starts."""
-        return min(self.front, key=lambda entry: (-entry.reached, entry.cost))
+        """The entry of least cost among those that end at the goal from most starts, or from hardly fewer (TIE)."""
+        most = max(entry.reached for entry in self.front)
+        return min(
+            (entry for entry in self.front if entry.reached >= most - TIE), key=lambda entry: entry.cost
+        )
 
     @property
     def law(self) -> Law:
@@ -79,7 +88,9 @@ class SynthesisResult:
                 "complexity": entry.complexity,
                 "cost": entry.cost,
                 "reached": entry.reached,
+                "reached_at_least": entry.reached_at_least,
                 "median_time": entry.median_time,
+                "worst_time": entry.worst_time,
                 "formulas": "; ".join(entry.law.formulas()),
             }
             for entry in self.front
@@ -87,18 +98,25 @@ class SynthesisResult:
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write `rows` as a CSV file with a header; raises FileError if that is not possible."""
-        write_csv(path, ("complexity", "cost", "reached", "median_time", "formulas"), self.rows())
+        times = ("median_time", "worst_time")
+        names = ("complexity", "cost", "reached", "reached_at_least", *times, "formulas")
+        write_csv(path, names, self.rows())
 
     def plot(self, *, ax: "Axes | None" = None) -> "Axes":
         """Cost over complexity (`gpsynth.plotting.plot_front`)."""
         return plot_front(self.front, ax=ax)
 
     def table(self) -> str:
-        """The front as text: complexity, cost, share of starts reached, median time, formulas."""
-        lines = [f"{'size':>4} {'cost':>10} {'reached':>8} {'median s':>9}  law"]
+        """The front as text.
+
+        Complexity, cost, share of starts reached and what its probability is at least, times (s), formulas.
+        """
+        lines = [f"{'size':>4} {'cost':>10} {'reached':>8} {'p >=':>6} {'median s':>9} {'worst s':>8}  law"]
         for entry in self.front:
-            head = f"{entry.complexity:4d} {entry.cost:10.4g} {entry.reached:8.1%} {entry.median_time:9.2f}  "
-            lines.append(head + ("\n" + " " * 36).join(entry.law.formulas()))
+            least = "" if entry.reached_at_least is None else f"{entry.reached_at_least:.3f}"
+            head = f"{entry.complexity:4d} {entry.cost:10.4g} {entry.reached:8.1%} {least:>6} "
+            head += f"{entry.median_time:9.2f} {entry.worst_time:8.2f}  "
+            lines.append(head + ("\n" + " " * len(head)).join(entry.law.formulas()))
         return "\n".join(lines)
 
 
@@ -113,6 +131,7 @@ def synthesize(
     guesses: Sequence[Guess] = (),
     objective: Objective | Function | None = None,
     rough: Problem | None = None,
+    tuned: Problem | None = None,
     trials: Sequence[Problem] = (),
     islands: Islands | None = None,
     folder: str | os.PathLike[str] | None = None,
@@ -124,9 +143,10 @@ def synthesize(
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
     An evaluation is one parameter vector of one formula rolled out from all starts. The search may use a `rough`
-    problem (fewer starts, longer steps); every law of the front is tuned on `problem` itself, with at most `tuning`
-    evaluations. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps,
-    another plant), which no search has seen, so that a law that only fits its training loses.
+    problem (fewer starts, longer steps). Every law of the front is tuned on `problem` itself, or on the problem
+    `tuned`, with at most `tuning` evaluations. The front that comes back is scored on `problem` and on all `trials`
+    (other starts, shorter steps, another plant), which no search has seen, so that a law that only fits its training
+    loses.
 
     The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. An `objective`, a
     function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With a `folder`
@@ -162,11 +182,12 @@ def synthesize(
     )
     tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
+    tuner = Evaluator(tuned or problem)
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
         number, individual = numbered
         values = _tuned(
-            evaluators[0], encoding.space, individual, wanted, seed=seed, budget=tuning, path=(TUNING, number)
+            tuner, encoding.space, individual, wanted, seed=seed, budget=tuning, path=(TUNING, number)
         )
         return _entry(evaluators, individual.program, values, wanted)
 
@@ -262,13 +283,16 @@ def _entry(
         evaluator.of_program(program, values[np.newaxis], paths=objective.paths) for evaluator in evaluators
     ]
     arrival = np.concatenate([each.arrival[0] for each in rollouts])
-    reached = np.concatenate([_there(*pair) for pair in zip(evaluators, rollouts, strict=True)])
+    there = [_there(*pair) for pair in zip(evaluators, rollouts, strict=True)]
+    reached = np.concatenate(there)
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
         cost=float(np.concatenate([objective(each)[0] for each in rollouts]).mean()),
         complexity=program.complexity,
         reached=float(reached.mean()),
         median_time=float(np.median(arrival[reached])) if reached.any() else float("inf"),
+        worst_time=float(arrival[reached].max()) if reached.any() else float("inf"),
+        reached_at_least=min((lower_bound(int(each.sum()), len(each)) for each in there[1:]), default=None),
     )
 
 

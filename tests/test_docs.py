@@ -70,6 +70,14 @@ def test_getting_started_runs_as_printed(tmp_path, monkeypatch):
                 subprocess.run(shlex.split(line), check=True, cwd=tmp_path)
 
 
+@pytest.mark.slow
+def test_the_examples_of_regression_run_as_printed():
+    pytest.importorskip("sklearn", reason="scikit-learn is not installed")
+    place: dict[str, object] = {}
+    for block in blocks("regression.md", "python"):
+        exec(compile(block, "regression.md", "exec"), place)
+
+
 def test_robustness_runs_as_printed(capsys):
     place: dict[str, object] = {}
     for block in blocks("robustness.md", "python"):

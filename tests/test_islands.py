@@ -1,5 +1,11 @@
 """Islands find the same wherever they run, spend what they may, and lose nothing when they merge."""
 
+import os
+import signal
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
 import joblib
 import numpy as np
 import pytest
@@ -59,16 +65,41 @@ def test_processes_change_nothing(search):
     assert _costs(_found(search, workers=2)) == _costs(_found(search))
 
 
+@dataclass(frozen=True)
+class DiesOnce:
+    """Costs, but the first process that is asked for them is killed."""
+
+    marker: Path
+
+    def __call__(self, batch):
+        """Costs of a batch."""
+        if not self.marker.exists():
+            self.marker.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return BatchCost(PROBLEM)(batch)
+
+
 @pytest.mark.slow
-def test_a_dask_cluster_of_two_changes_nothing(search):
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
+def test_a_killed_process_changes_nothing(search, tmp_path):
+    settings = {"islands": ISLANDS, "seed": 1, "budget": BUDGET, "path": (1,)}
+    found = search_islands(DiesOnce(tmp_path / "died"), search, **settings, workers=2)
+    assert (tmp_path / "died").exists()
+    assert _costs(found) == _costs(_found(search))
+
+
+@pytest.mark.slow
+def test_a_dask_cluster_that_loses_a_worker_changes_nothing(search, tmp_path):
     distributed = pytest.importorskip("distributed", reason="dask is an extra: gpsynth[cluster]")
     with (
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
         distributed.Client(cluster),
         joblib.parallel_config(backend="dask"),
     ):
-        there = _costs(_found(search, workers=2))
-    assert there == _costs(_found(search))
+        settings = {"islands": ISLANDS, "seed": 1, "budget": BUDGET, "path": (1,)}
+        there = search_islands(DiesOnce(tmp_path / "died"), search, **settings, workers=2)
+    assert (tmp_path / "died").exists()
+    assert _costs(there) == _costs(_found(search))
 
 
 def test_resuming_after_any_level_changes_nothing(search):

@@ -30,7 +30,8 @@ def run_demo(out: Path, *, seed: int, short: bool, threads: int) -> list[SavedPl
     click.echo("\n".join(["", *result.law.formulas(), ""]))
     best = result.best
     click.echo(
-        f"size {best.complexity}, reaches {best.reached:.1%} of its starts, median {best.median_time:.2f} s\n"
+        f"size {best.complexity}, reaches {best.reached:.1%} of its starts (probability at least "
+        f"{best.reached_at_least:.3f}), median {best.median_time:.2f} s, worst {best.worst_time:.2f} s\n"
     )
     click.echo("stage 2: optimal equilibrium points")
     plans = []

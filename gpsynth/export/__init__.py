@@ -1,4 +1,4 @@
-"""Every form of a law that leaves the package; numba, sympy, casadi and control load with the form that needs them."""
+"""Every form of a law or program that leaves the package; numba, sympy, casadi and control load when needed."""
 
 from importlib import import_module
 from types import MappingProxyType
@@ -11,11 +11,15 @@ if TYPE_CHECKING:
     from gpsynth.export.folder import write
     from gpsynth.export.formula import to_text
     from gpsynth.export.latex import to_document, to_latex
+    from gpsynth.export.programs import program_to_c, program_to_latex, program_to_python
     from gpsynth.export.python_form import to_python
     from gpsynth.export.sympy_form import SympyForm, to_sympy
 
 __all__ = [
     "SympyForm",
+    "program_to_c",
+    "program_to_latex",
+    "program_to_python",
     "to_c",
     "to_casadi",
     "to_control",
@@ -30,6 +34,9 @@ __all__ = [
 _MODULES = MappingProxyType(
     {
         "SympyForm": "sympy_form",
+        "program_to_c": "programs",
+        "program_to_latex": "programs",
+        "program_to_python": "programs",
         "to_c": "c",
         "to_casadi": "casadi_form",
         "to_control": "control_form",

@@ -30,7 +30,7 @@ _RESERVED = (
     "main state target control abort exit free malloc memchr memcmp memcpy memmove memset printf puts stderr stdin "
     "stdout strcpy strlen"
 )
-_CHECKS = """\
+CHECKS = """\
 #ifdef __FAST_MATH__
 #error "compile without -ffast-math: the law was checked in IEEE arithmetic"
 #endif
@@ -52,8 +52,8 @@ def to_c(law: Law, name: str = "law", vectors: tuple[Floats, Floats] | None = No
     `vectors` are states and targets (V, N) each, on which the self-test (compile with -DNAME_SELF_TEST) compares all
     bits of the controls with those of the law. Raises LawError if `name` cannot name a C function.
     """
-    _check_name(name)
-    lines = listing(law, Syntax(number=c_number, operation=_operation))
+    check_name(name)
+    lines = listing(law, Syntax(number=c_number, operation=written))
     remarks = "\n".join(f" * {line}" for line in header_lines(law, name))
     source = _SOURCE.format(
         remarks=remarks,
@@ -61,8 +61,8 @@ def to_c(law: Law, name: str = "law", vectors: tuple[Floats, Floats] | None = No
         self_test_macro=f"{name.upper()}_SELF_TEST",
         name=name,
         headers=HEADERS,
-        checks=_CHECKS,
-        functions=_functions(lines),
+        checks=CHECKS,
+        functions=used_functions(lines),
         prototype=_prototype(law, name),
         body=indent(_body(law, lines), "    "),
         self_test=_self_test(law, name, *(vectors or trial_states(law, 32))),
@@ -71,7 +71,8 @@ def to_c(law: Law, name: str = "law", vectors: tuple[Floats, Floats] | None = No
     return source, header
 
 
-def _check_name(name: str) -> None:
+def check_name(name: str) -> None:
+    """Raise LawError unless `name` can name a C function beside ours."""
     if (
         not _NAME.match(name)
         or name.startswith("gp_")
@@ -89,7 +90,8 @@ def _prototype(law: Law, name: str) -> str:
     return f"void {name}(const double state[{size}], const double target[{size}], double control[{controls}])"
 
 
-def _operation(operation: Operation, operands: tuple[str, ...]) -> str:
+def written(operation: Operation, operands: tuple[str, ...]) -> str:
+    """An operation of these operands in C."""
     if operation.name in OPERATORS:
         return OPERATORS[operation.name].format(*operands)
     if operation.name == "div":
@@ -97,7 +99,8 @@ def _operation(operation: Operation, operands: tuple[str, ...]) -> str:
     return f"{c_name(operation.name)}({', '.join(operands)})"
 
 
-def _functions(lines: Listing) -> str:
+def used_functions(lines: Listing) -> str:
+    """The C functions that a listing calls, behind an empty line."""
     names = [name for name in lines.operations if name not in OPERATORS and name != "div"]
     return f"\n{functions(names)}" if names else ""
 

@@ -48,10 +48,10 @@ _STARTS_WITH_NUMBER = re.compile(r"\d|\\tfrac")
 def to_latex(law: Law, name: str = "law") -> str:
     """The law as an align* environment (it needs amsmath), behind comments that say what it is."""
     features = law.features
-    names = _symbols((*features.inputs, *features.names, *law.program.names))
+    names = symbols((*features.inputs, *features.names, *law.program.names))
     rows = [
         (names.get(left, symbol(left)), right.text)
-        for left, right in spell_law(law, _notation(names), largest=10)
+        for left, right in spell_law(law, notation(names), largest=10)
     ]
     comments = [*header_lines(law, name), *meanings(law)]
     return "\n".join(
@@ -97,7 +97,7 @@ def symbol(name: str) -> str:
     return f"{first}_{{{','.join(rest)}}}" if rest else first
 
 
-def _symbols(names: Iterable[str]) -> dict[str, str]:
+def symbols(names: Iterable[str]) -> dict[str, str]:
     """The symbol of each name; names that would look the same stand as they are."""
     symbols = {name: symbol(name) for name in names}
     shown = list(symbols.values())
@@ -117,7 +117,9 @@ def _escaped(text: str) -> str:
     return re.sub(r"([%_])", r"\\\1", text.replace("^", "\\^{}"))
 
 
-def _notation(names: dict[str, str]) -> Notation[Piece]:
+def notation(names: dict[str, str]) -> Notation[Piece]:
+    """How LaTeX writes programs whose values have these symbols."""
+
     def named(name: str) -> Piece:
         text = names.get(name, symbol(name))
         return Piece(text, Level.POWER if "^" in text or text.startswith("\\Delta ") else Level.ATOM)

@@ -1,6 +1,6 @@
 """A law as straight-line assignments, which C and Python write in their own syntax."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -45,7 +45,20 @@ def listing(law: Law, syntax: Syntax) -> Listing:
     """States and targets to saturated controls: each value is assigned once, and only what is needed."""
     program, remarks = _with_features(law)
     size = len(law.plant.state_names)
-    live = _live(program, len(law.plant.control_names))
+    places = [(vector, index) for vector in ("state", "target") for index in range(size)]
+    return assigned(program, syntax, places, remarks=remarks, outputs=len(law.plant.control_names))
+
+
+def assigned(
+    program: Program,
+    syntax: Syntax,
+    places: Sequence[tuple[str, int]],
+    *,
+    remarks: Mapping[int, str] = MappingProxyType({}),
+    outputs: int,
+) -> Listing:
+    """The first `outputs` outputs of a program without parameters, whose input k is element places[k] of a vector."""
+    live = _live(program, outputs)
     first = len(program.leaves)
     texts: dict[int, str] = {}
     assignments: list[Assignment] = []
@@ -58,15 +71,14 @@ def listing(law: Law, syntax: Syntax) -> Listing:
         if leaf.kind == "constant":
             texts[index] = syntax.number(leaf.value)
         elif index in live:
-            vector, element = ("state", leaf.index) if leaf.index < size else ("target", leaf.index - size)
-            assign(index, syntax.element.format(vector, element), leaf.name)
+            assign(index, syntax.element.format(*places[leaf.index]), leaf.name)
     for index, (operation, operands) in enumerate(program.instructions, start=first):
         if index in live:
             value = syntax.operation(operation, tuple(texts[operand] for operand in operands))
             assign(index, value, remarks.get(index, ""))
     return Listing(
         tuple(assignments),
-        tuple(texts[output] for output in program.outputs.tolist()[: len(law.plant.control_names)]),
+        tuple(texts[output] for output in program.outputs.tolist()[:outputs]),
         tuple(
             sorted(
                 {

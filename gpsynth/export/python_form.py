@@ -18,7 +18,7 @@ from gpsynth.kernels.elementary import function_of
 from gpsynth.law import Law
 from gpsynth.operations import Operation
 
-_IMPORTS = "import math\nimport struct\nfrom collections.abc import Sequence\n"
+IMPORTS = "import math\nimport struct\nfrom collections.abc import Sequence\n"
 # What the interpreter does its own way, in place of the kernels' function of the same name.
 _PRIMITIVES: Mapping[str, str] = MappingProxyType(
     {
@@ -54,7 +54,7 @@ Function = Callable[..., Any]
 
 def to_python(law: Law, name: str = "law") -> str:
     """A module with one function, `control(state, target)`, that gives the tuple of saturated controls."""
-    lines = listing(law, Syntax(_number, _operation, element="float({0}[{1}])"))
+    lines = listing(law, Syntax(python_number, written, element="float({0}[{1}])"))
     title, *remarks = header_lines(law, name)
     called = [operation for operation in lines.operations if operation not in OPERATORS]
     statements = [
@@ -72,8 +72,8 @@ def to_python(law: Law, name: str = "law") -> str:
             "",
             *(f"# {line.strip()}" for line in remarks),
             "",
-            _IMPORTS,
-            *_definitions(called),
+            IMPORTS,
+            *definitions(called),
             "",
             "def control(state: Sequence[float], target: Sequence[float]) -> tuple[float, ...]:",
             '    """The saturated controls at a state and a target."""',
@@ -83,13 +83,15 @@ def to_python(law: Law, name: str = "law") -> str:
     )
 
 
-def _number(value: float) -> str:
+def python_number(value: float) -> str:
+    """A number in Python, infinities and NaN included."""
     if math.isfinite(value):
         return repr(value)
     return "math.nan" if math.isnan(value) else ("math.inf" if value > 0.0 else "-math.inf")
 
 
-def _operation(operation: Operation, operands: tuple[str, ...]) -> str:
+def written(operation: Operation, operands: tuple[str, ...]) -> str:
+    """An operation of these operands in Python."""
     if operation.name in OPERATORS:
         return OPERATORS[operation.name].format(*operands)
     return f"{_python_name(operation.name)}({', '.join(operands)})"
@@ -99,7 +101,7 @@ def _python_name(name: str) -> str:
     return "divide" if name == "div" else function_of(name).__name__
 
 
-def _definitions(names: Iterable[str]) -> list[str]:
+def definitions(names: Iterable[str]) -> list[str]:
     """The constants and functions these rows need, each before its first use."""
     constants: dict[str, str] = {}
     texts: dict[str, str] = {}
@@ -131,7 +133,9 @@ def _collect(function: Function, constants: dict[str, str], texts: dict[str, str
         if inspect.isfunction(value):
             _collect(value, constants, texts)
         else:
-            spelled = _number(value) if isinstance(value, float) else f"{'-' * (value < 0)}0x{abs(value):X}"
+            spelled = (
+                python_number(value) if isinstance(value, float) else f"{'-' * (value < 0)}0x{abs(value):X}"
+            )
             assert constants.setdefault(used, spelled) == spelled
     texts[name] = f"{text}\n"
 

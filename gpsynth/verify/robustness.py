@@ -15,6 +15,7 @@ from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
 from gpsynth.problem import Problem
+from gpsynth.proportions import lower_bound
 from gpsynth.verify.stress import Stress, harder
 
 _FEWEST_DRAWS = 3  # with fewer there is no correlation
@@ -118,13 +119,6 @@ def assess(
         sensitivities = tuple(_sensitivities(problem, numbers, means))
         slowest = _slowest(problem, numbers, means, arrival[groups == np.argmax(means)])
     return Robustness(tuple(trials), sensitivities, slowest, len(numbers), confidence)
-
-
-def lower_bound(successes: int, runs: int, confidence: float = 0.95) -> float:
-    """What the probability of success is at least, by Clopper and Pearson, one-sided."""
-    if successes == 0:
-        return 0.0
-    return float(stats.beta.ppf(1.0 - confidence, successes, runs - successes + 1))
 
 
 def _rolled(law: Law, problem: Problem, threads: int) -> tuple[Floats, npt.NDArray[np.bool_]]:

@@ -26,9 +26,9 @@ from gpsynth.draws import Draws, crossed, random_draws
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.law import Law
 from gpsynth.problem import Problem
+from gpsynth.proportions import lower_bound
 from gpsynth.seeds import stream
 from gpsynth.simulation import simulate
-from gpsynth.verify.robustness import lower_bound
 
 PERIODS = (0.05, 0.005)  # s
 HORIZON = 40.0  # s

@@ -12,8 +12,9 @@ from gpsynth.errors import ProblemError
 from gpsynth.law import Law
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
+from gpsynth.proportions import lower_bound
 from gpsynth.tracing import trace, where
-from gpsynth.verify.robustness import assess, lower_bound
+from gpsynth.verify.robustness import assess
 from gpsynth.verify.stress import Stress, noisy, refined, scaled
 
 LINE = Plant(

@@ -1,0 +1,1 @@
+"""Symbolic regression: formulas found from data (X, y)."""

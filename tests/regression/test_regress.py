@@ -1,0 +1,98 @@
+"""`regress`: easy formulas come back, the same seed gives the same result, and what does not fit is said."""
+
+import numpy as np
+import pytest
+
+import gpsynth
+from gpsynth.errors import RegressionError
+from gpsynth.export import to_sympy
+from gpsynth.regression.front import Candidate, choose
+
+RNG = np.random.default_rng(9)
+ROWS = RNG.uniform(0.5, 3.0, (60, 3))
+A, B, C = ROWS.T
+EASY = {
+    "polynomial": A**3 - 2 * B,
+    "wave": 1.5 * A * np.sin(B) + 0.5,
+    "quotient": A / (1 + B * C),
+    "root": np.sqrt(A * A + B * B),
+    "power": 3 * A * np.sqrt(B) / C,
+    "inner numbers": np.exp(-0.37 * A),
+}
+
+
+@pytest.mark.parametrize("name", EASY)
+def test_easy_formulas_are_found_exactly(name: str) -> None:
+    result = gpsynth.regress(ROWS, EASY[name], evaluations=30_000_000)
+    assert result.best.error < 1e-20
+    assert result.best.size <= 15
+    assert result.predict(ROWS) == pytest.approx(EASY[name], rel=1e-9)
+
+
+def test_the_same_seed_gives_the_same_bits() -> None:
+    y = np.sin(A * B) + RNG.normal(size=60)
+    first, second = (gpsynth.regress(ROWS, y, evaluations=40_000, seed=3) for _ in range(2))
+    assert first.front == second.front
+    assert first.history == second.history
+
+
+def test_the_order_of_rows_does_not_matter_and_weights_mean_repetition() -> None:
+    y = A + np.cos(B) + 0.1 * RNG.normal(size=60)
+    weights = RNG.integers(0, 3, 60).astype(float)
+    repeated = RNG.permutation(np.repeat(np.arange(60), weights.astype(int)))
+    weighted = gpsynth.regress(ROWS, y, weights=weights, evaluations=40_000)
+    again = gpsynth.regress(ROWS[repeated], y[repeated], evaluations=40_000)
+    assert weighted.front == again.front
+
+
+def test_the_front_falls_in_error_as_it_rises_in_size() -> None:
+    y = np.exp(np.sin(A)) * B + 0.01 * RNG.normal(size=60)
+    result = gpsynth.regress(ROWS, y, evaluations=300_000, names=("a", "b", "c"))
+    sizes, errors = [f.size for f in result.front], [f.error for f in result.front]
+    assert sizes == sorted(sizes)
+    assert errors == sorted(errors, reverse=True)
+    for item in result.front:
+        left = item.program(ROWS)[:, 0] - y
+        assert item.error == pytest.approx(float(left @ left / np.sum((y - y.mean()) ** 2)), rel=1e-9)
+    assert len(result.table().splitlines()) == len(result.front) + 1
+
+
+def test_the_choice_is_the_shortest_description() -> None:
+    small = Candidate(("variable", 0), 1e-2, 1)
+    barely_better = Candidate(("add", ("variable", 0), ("variable", 1)), 0.0099, 9)
+    much_better = Candidate(("mul", ("variable", 0), ("variable", 1)), 1e-6, 9)
+    assert choose([small, barely_better], 30) == small
+    assert choose([small, much_better], 30) == much_better
+
+
+def test_a_result_goes_to_the_exporters() -> None:
+    result = gpsynth.regress(
+        ROWS, EASY["wave"], names=("a", "b", "c"), target_name="u", evaluations=2_000_000
+    )
+    (expression,) = to_sympy(result.program, expanded=True).expressions
+    assert {str(symbol) for symbol in expression.free_symbols} == {"a", "b"}
+    assert result.formulas()[-1].startswith("u = ")
+
+
+def test_a_constant_target_is_its_value() -> None:
+    result = gpsynth.regress(ROWS, np.full(60, 2.5))
+    assert result.predict(ROWS) == pytest.approx(np.full(60, 2.5))
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"target": np.ones(3)}, "60 rows and the target has 3"),
+        ({"inputs": np.ones(60)}, r"shape \(60,\)"),
+        ({"target": np.full(60, np.nan)}, "finite"),
+        ({"functions": ("add", "gamma")}, "not gamma"),
+        ({"weights": -np.ones(60)}, "60 weights"),
+        ({"names": ("a", "b")}, "3 different names"),
+        ({"names": ("a", "b", "__import__('os')")}, "different names"),
+        ({"evaluations": 0}, "budget is positive"),
+    ],
+)
+def test_what_does_not_fit_is_one_sentence(settings, message) -> None:
+    arguments = {"inputs": ROWS, "target": A, **settings}
+    with pytest.raises(RegressionError, match=message):
+        gpsynth.regress(arguments.pop("inputs"), arguments.pop("target"), **arguments)
