@@ -20,6 +20,7 @@ from gpsynth.problem import Problem
 from gpsynth.program import Program
 
 MOST_PERIODS = 10_000_000  # of one rollout
+ROUNDING = 1e-9  # of a sum of costs: what is above a bound by no more is not above it
 _NO_TRACE = np.empty((0, 0, 0))
 
 
@@ -100,7 +101,7 @@ class Evaluator:
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
         bounded = len(vectors) == 1 and problem.costs_nonnegative
-        total = bound * len(problem.starts) if bounded else np.inf
+        total = bound * len(problem.starts) * (1.0 + ROUNDING) if bounded else np.inf
         clock = self.until(problem.horizon, bound=total)
         return self._roll(program, vectors, _NO_PLAN, clock, len(vectors), paths=paths)
 

@@ -33,8 +33,9 @@ class Islands:
     count: int = 16
 
     def __post_init__(self) -> None:
-        if self.count < 1 or self.count & (self.count - 1):
-            raise OptimizerError(f"the number of islands must be a power of 2, not {self.count}")
+        count = self.count
+        if not isinstance(count, int) or isinstance(count, bool) or count < 1 or count & (count - 1):
+            raise OptimizerError(f"the number of islands must be a power of 2, not {count!r}")
 
     @property
     def levels(self) -> int:
@@ -87,8 +88,14 @@ def search_islands(  # noqa: PLR0913 takes what `minimize` takes
 
     Islands run in `workers` processes through joblib, so `joblib.parallel_config(backend="dask")` sends them to a
     cluster; the same seed gives the same result wherever they run. `checkpoint`, `callback` and the progress bar hear
-    of each level. Raises OptimizerError if an island's share is less than one generation.
+    of each level. A run is resumed with the budget it began with. Raises OptimizerError if an island's share is less
+    than one population.
     """
+    least = strategy.population * (2 * islands.count - 1)
+    if budget < least:
+        raise OptimizerError(
+            f"a budget of {budget} evaluations is too small for {islands.count} islands; at least {least} are needed"
+        )
     now = resume or Archipelago(0, (None,) * islands.count)
     reason = "budget spent"
     with bar(budget, progress) as show:

@@ -158,6 +158,11 @@ def synthesize(
     or FormulaError if a guess is no formula of the encoding, FileError if the folder's checkpoint is of another run.
     """
     check_encoding(problem, encoding)
+    if not (islands is None or isinstance(islands, Islands)):
+        raise ProblemError(f"islands are given as gpsynth.Islands(...), got {islands!r}")
+    if not isinstance(threads, int) or threads < 1:
+        raise ProblemError(f"threads must be an integer of at least 1, got {threads!r}")
+    shape = None if islands is None else (islands, budget)  # shares depend on the budget
     wanted = as_objective(objective)
     strategy: Any = search or StructureSearch(encoding)
     if islands is not None and not isinstance(strategy, StructureSearch):
@@ -171,7 +176,7 @@ def synthesize(
         strategy,
         None
         if folder is None
-        else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, islands, seed)),
+        else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, shape, seed)),
         run=minimize if islands is None else partial(search_islands, islands=islands, workers=threads),
         resume=resume,
         seed=seed,
@@ -201,7 +206,7 @@ def _identity(
     rough: Problem | None,
     search: Any,
     objective: Objective,
-    islands: Islands | None,
+    islands: tuple[Islands, int] | None,
     seed: int,
 ) -> dict[str, str]:
     """What two runs must have in common for one to go on where the other stopped."""
@@ -210,7 +215,7 @@ def _identity(
         "rough problem": rough,
         "search": search,
         "objective": objective,
-        "number of islands": islands,
+        "number of islands or their budget": islands,
     }
     hashes = {name: fingerprint(part) for name, part in parts.items()}
     return {**hashes, "seed": str(seed), "release": version("gpsynth")}

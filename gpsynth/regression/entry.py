@@ -21,7 +21,7 @@ from gpsynth.regression.state import State
 
 FUNCTIONS = ("add", "sub", "mul", "div", "sin", "cos", "exp", "log", "sqrt")
 EVALUATIONS = 300_000_000
-LARGEST = 1e100
+LARGEST = 1e50
 SMALLEST_LIBRARY, LARGEST_LIBRARY = 300, 20_000  # enumerated formulas; small budgets get small libraries
 
 
@@ -55,6 +55,8 @@ def regress(
         raise RegressionError(f"functions are some of {', '.join(NAMES)}; not {', '.join(unknown) or 'none'}")
     if evaluations < 1 or (seconds is not None and not seconds > 0.0):
         raise RegressionError(f"the budget is positive, not {evaluations} evaluations and {seconds} seconds")
+    if not isinstance(seed, int | np.integer) or seed < 0:
+        raise RegressionError(f"seed must be a whole number from 0 on, not {seed!r}")
     labels = (
         column_names(names, rows.shape[1]) if names is None else _checked(names, rows.shape[1], target_name)
     )

@@ -79,13 +79,17 @@ def multiplied(state: State, multiples: Multiples, target: Target) -> None:
             return
         made = list(dict.fromkeys(made + best_products(pairs_of_factors, residual / norm, MULTIPLIED)))
         state.evaluations += len(left) * len(right)
+        if not made:
+            break
         unit, varies = centered(_made(multiples, made))
         kept = np.flatnonzero(varies)
         together = Columns(
             np.concatenate((few.columns.unit, unit[kept])), np.concatenate((few.columns.formula, -1 - kept))
         )
         subsets = select(together, values, terms=TERMS, width=WIDTH)
-        best = min((s for s in subsets if len(s.columns) <= terms), key=lambda s: s.rest)
+        best = min((s for s in subsets if len(s.columns) <= terms), key=lambda s: s.rest, default=None)
+        if best is None:
+            break
         if min(s.rest for s in subsets) < EXACT or best.rest > 0.9 * least:
             break
         least = best.rest

@@ -23,7 +23,7 @@ GOLDEN = Path(__file__).parents[3] / "shared" / "golden" / "nom_default.json"
 STARTS = list(
     itertools.product((-2.5, -1.25, 0.0, 1.25, 2.5), (-2.5, 0.0, 2.5), (-5 * np.pi / 12, 0.0, 5 * np.pi / 12))
 )
-OPERATIONS = ("add", "sub", "mul", "neg", "sgn", "signed_sqrt", "tanh", "sin", "atan")
+OPERATIONS = ("add", "sub", "mul", "neg", "sign", "signed_sqrt", "tanh", "sin", "atan")
 NEAR = 0.1  # largest error at which the robot counts as there, and its wheels stop
 BUDGET = 80_000
 ISLANDS = gs.Islands(8)

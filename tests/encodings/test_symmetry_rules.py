@@ -32,7 +32,13 @@ def _breaks(program, values, inputs):
 
 
 @pytest.mark.parametrize(
-    "operations", [GP_NAMES, ("add", "sub", "mul", "where", "lt", "hypot", "tanh", "cube")]
+    "operations",
+    [
+        GP_NAMES,
+        ("sub", "mul", "sgn", "div_protected", "div", "atan2", "nop_inverse"),
+        ("sub", "signed_abs_max", "signed_hypot", "signed_decay", "nop_cbrt", "signed_sqrt"),
+        ("add", "sub", "mul", "where", "lt", "hypot", "tanh", "cube"),
+    ],
 )
 def test_all_formulas_keep_the_symmetries(operations):
     encoding, rng = _encoding(operations), stream(1)
@@ -87,9 +93,10 @@ def test_a_formula_that_fits_stays_whole():
     ("signs", "sentence"),
     [
         ({"x": "+", "u": "-"}, "no input has the signs of u"),
-        ({"x": "+-", "u": "+"}, "equally long"),
-        ({"x": "*", "u": "+"}, "texts of [+] and -"),
-        ({"x": "", "u": ""}, "not empty"),
+        ({"x": "+-", "u": "+"}, "equally long.*x has '[+]-', u '[+]'"),
+        ({"x": "*", "u": "+"}, "the signs of x are a text of [+] and -, not '[*]'"),
+        ({"x": "", "u": ""}, "the signs of x are a text of [+] and -, not ''"),
+        ({"x": 1, "u": -1}, "the signs of x are a text of [+] and -, not 1"),
         ({"x": "-"}, "'u' has none"),
         ({"x": "-", "u": "-", "w": "-"}, "'w' is none of them"),
     ],

@@ -96,3 +96,23 @@ def test_what_does_not_fit_is_one_sentence(settings, message) -> None:
     arguments = {"inputs": ROWS, "target": A, **settings}
     with pytest.raises(RegressionError, match=message):
         gpsynth.regress(arguments.pop("inputs"), arguments.pop("target"), **arguments)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "target"),
+    [
+        (np.ones((10, 2)), np.arange(10.0)),
+        (np.array([[1.0, 2.0], [2.0, 1.0]]), np.array([3.0, 5.0])),
+        (np.repeat([[1.0, 2.0], [2.0, 1.0]], 5, axis=0), np.repeat([3.0, 5.0], 5)),
+        (np.array([[1.0, 2.0], [2.0, 1.0], [3.0, 7.0]]) * 1e45, np.array([3.0, 5.0, 7.0]) * 1e45),
+    ],
+    ids=["constant columns", "two rows", "two different rows", "huge numbers"],
+)
+def test_data_that_say_little_give_a_formula_all_the_same(inputs, target):
+    result = gpsynth.regress(inputs, target, evaluations=20_000)
+    assert np.all(np.isfinite(result.predict(inputs)))
+
+
+def test_a_seed_that_is_none_is_named():
+    with pytest.raises(RegressionError, match="whole number from 0 on, not -1"):
+        gpsynth.regress(np.ones((3, 1)), np.ones(3), seed=-1)
