@@ -20,7 +20,7 @@ from gpsynth.cli import (
 )
 
 PATH = click.Path(path_type=Path)
-SEED = 3  # of the law that comes along
+SEED = 1  # of the law that comes along
 NO_PLAN = 3  # exit code where the goal is unreachable or no plan was found
 
 

@@ -84,7 +84,7 @@ def test_the_shipped_law_keeps_the_limits_and_rests_at_the_target() -> None:
 @pytest.mark.slow
 def test_a_law_found_from_scratch_reaches_the_goal() -> None:
     """A third of the main job's budget, so the bar is lower; `python -m tests.bench.stabilizer` shows the full one."""
-    result = synthesize_stabilizer(seed=3, budget=10_000)
+    result = synthesize_stabilizer(seed=1, budget=10_000)
     for period in (0.05, 0.005):
         assert np.isfinite(arrivals(result.law, 200, period=period)).mean() >= 0.9
     assert result.front[0].complexity < result.best.complexity
