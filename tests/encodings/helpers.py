@@ -76,7 +76,7 @@ ENCODINGS = {
     "tree-symmetries": TreeEncoding(
         ("x", "y", "z"),
         ("u", "v"),
-        GP_NAMES,
+        PLAIN,
         ParameterSpace(8, -4.0, 4.0),
         symmetries={"x": "+-", "y": "--", "z": "-+", "u": "+-", "v": "-+"},
     ),

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from gpsynth.export import to_casadi
+from gpsynth import export
 from gpsynth.kernels import elementary
 from gpsynth.operations import OPERATIONS
 from gpsynth.seeds import stream
@@ -15,7 +15,7 @@ casadi = pytest.importorskip("casadi", reason="casadi is not installed")
 
 @pytest.mark.parametrize("operation", OPERATIONS, ids=lambda operation: operation.name)
 def test_casadi_form_equals_the_kernel(operation):
-    function = to_casadi(_program_of(operation))
+    function = export.to_casadi(_program_of(operation))
     for operands in _operands(operation):
         padded = [*operands, 0.0, 0.0][:3]
         # libm is within 1 ulp and our functions within 2; the cube root by a power loses a few more
@@ -30,7 +30,7 @@ def test_casadi_form_equals_the_kernel(operation):
 
 @pytest.mark.parametrize("law", [robot_law(), *(random_law(stream(seed)) for seed in range(5))])
 def test_a_law_keeps_its_signature_its_numbers_and_its_limits(law):
-    function = to_casadi(law, "steer")
+    function = export.to_casadi(law, "steer")
     assert (function.name(), function.name_in(), function.name_out()) == (
         "steer",
         ["state", "target"],
@@ -46,7 +46,7 @@ def test_a_law_keeps_its_signature_its_numbers_and_its_limits(law):
 
 def test_the_jacobian_is_that_of_the_law():
     law = robot_law()
-    function = to_casadi(law)
+    function = export.to_casadi(law)
     state, target = np.array([0.3, -0.2, 0.1]), np.array([0.0, 0.1, 0.0])
     symbol = casadi.SX.sym("x", 3)
     jacobian = casadi.Function("j", [symbol], [casadi.jacobian(function(symbol, target), symbol)])

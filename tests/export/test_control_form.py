@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import gpsynth as gs
-from gpsynth.export import to_control
+from gpsynth import export
 
 control = pytest.importorskip("control", reason="python-control is not installed")
 
@@ -26,7 +26,7 @@ def rail_law() -> gs.Law:
 
 
 def test_signals_have_the_names_of_the_plant():
-    system = to_control(rail_law())
+    system = export.to_control(rail_law())
     assert system.name == "rail"
     assert system.state_labels == ["place", "speed"]
     assert system.input_labels == ["place_target", "speed_target"]
@@ -37,7 +37,7 @@ def test_the_response_equals_the_simulation():
     law = rail_law()
     path = gs.simulate(PROBLEM, law)
     response = control.input_output_response(
-        to_control(law),
+        export.to_control(law),
         path.t,
         path.target.T,
         X0=PROBLEM.starts[0],
