@@ -21,9 +21,7 @@ from gpsynth.structure_search import Cost, SearchState, StructureSearch
 G = TypeVar("G")
 Callback = Callable[[Progress[SearchState[Any]]], bool | None]
 
-TRIES = (
-    3  # of a level whose worker processes died; a level is a pure function, so trying again changes nothing
-)
+TRIES = 3  # of a level whose worker processes died
 
 
 @dataclass(frozen=True)

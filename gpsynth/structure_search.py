@@ -120,10 +120,12 @@ class StructureSearch(Generic[G]):
         """New formulas under `vectors` parameter vectors each, and the samples of the tuners."""
         batch: list[Candidate[G]] = []
         groups, tuned = [], []
-        for genome, program, born in self._new(state, rng):
+        new = self._new(state, rng)
+        full = len(state.population) == self.population
+        bounds = {born: state.bound(born) if full else inf for born in {born for *_, born in new}}
+        for genome, program, born in new:
             vectors = self._vectors(genome, program, rng)
-            bound = state.bound(born) if len(state.population) == self.population else inf
-            batch += [Candidate(genome, program, values, bound) for values in vectors]
+            batch += [Candidate(genome, program, values, bounds[born]) for values in vectors]
             groups.append((len(vectors), born))
         for individual in self._to_tune(state):
             tuner = self._tuner(individual)

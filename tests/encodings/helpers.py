@@ -186,3 +186,15 @@ def plain_chi(number: int, a: float, b: float) -> float:
 def wide(rng: np.random.Generator, *shape: int) -> np.ndarray:
     """Numbers of either sign, log-uniform from 1e-12 to 1e12."""
     return 10.0 ** rng.uniform(-12, 12, shape) * rng.choice([-1.0, 1.0], shape)
+
+
+def check_weighted_sum(solution, counts):
+    """Every output of a basic solution is q0 x0 + q1 x1 + ..., and what has no parameter weighs 1."""
+    n_inputs, n_parameters, n_outputs = counts
+    x, q = np.arange(1.0, n_inputs + 1), np.arange(2.0, n_parameters + 2)
+    weights = np.append(q, np.ones(n_inputs))[:n_inputs]
+    weights[n_parameters:] = 1.0
+    inputs, outputs = [f"x{k}" for k in range(n_inputs)], [f"u{k}" for k in range(n_outputs)]
+    program = solution.program(solution.entries, tuple(inputs), tuple(outputs))
+    assert np.array_equal(program(x[None], q), np.full((1, n_outputs), weights @ x))
+    assert program.complexity == min(n_inputs, n_parameters) + n_inputs - 1  # zeros leave nothing behind

@@ -13,7 +13,7 @@ from gpsynth.operations import operation
 from gpsynth.optimizers import minimize
 from gpsynth.seeds import stream
 from gpsynth.structure_search import StructureSearch
-from tests.encodings.helpers import ENCODINGS, PLAIN
+from tests.encodings.helpers import ENCODINGS, PLAIN, check_weighted_sum
 
 SIN, ADD = symbol_of("sin"), symbol_of("add")
 
@@ -37,15 +37,7 @@ def test_programs_equal_the_calls_made_one_by_one(name):
 
 @pytest.mark.parametrize("counts", [(1, 0, 1), (1, 3, 2), (3, 3, 2), (5, 2, 3)])
 def test_the_basic_columns_weight_and_sum(counts):
-    n_inputs, n_parameters, n_outputs = counts
-    x, q = np.arange(1.0, n_inputs + 1), np.arange(2.0, n_parameters + 2)
-    weights = np.append(q, np.ones(n_inputs))[:n_inputs]
-    weights[n_parameters:] = 1.0
-    inputs, outputs = [f"x{k}" for k in range(n_inputs)], [f"u{k}" for k in range(n_outputs)]
-    columns = basic_columns(*counts)
-    program = columns.program(columns.entries, tuple(inputs), tuple(outputs))
-    assert np.array_equal(program(x[None], q), np.full((1, n_outputs), weights @ x))
-    assert program.complexity == min(n_inputs, n_parameters) + n_inputs - 1
+    check_weighted_sum(basic_columns(*counts), counts)
 
 
 def test_variations_reach_every_row_and_nothing_to_the_right():

@@ -12,7 +12,7 @@ from gpsynth.kernels import elementary
 from gpsynth.optimizers import minimize
 from gpsynth.seeds import stream
 from gpsynth.structure_search import StructureSearch
-from tests.encodings.helpers import ENCODINGS, PLAIN
+from tests.encodings.helpers import ENCODINGS, PLAIN, check_weighted_sum
 
 IDENTITY = symbol_of("identity")
 
@@ -52,15 +52,7 @@ def test_programs_equal_the_tree_evaluated_place_by_place(name):
 
 @pytest.mark.parametrize("counts", [(1, 0, 1), (1, 3, 2), (3, 3, 2), (5, 2, 3), (4, 4, 1)])
 def test_the_basic_tree_weights_and_sums(counts):
-    n_inputs, n_parameters, n_outputs = counts
-    x, q = np.arange(1.0, n_inputs + 1), np.arange(2.0, n_parameters + 2)
-    weights = np.append(q, np.ones(n_inputs))[:n_inputs]
-    weights[n_parameters:] = 1.0
-    inputs, outputs = [f"x{k}" for k in range(n_inputs)], [f"u{k}" for k in range(n_outputs)]
-    tree = basic_tree(*counts)
-    program = tree.program(tree.entries, tuple(inputs), tuple(outputs))
-    assert np.array_equal(program(x[None], q), np.full((1, n_outputs), weights @ x))
-    assert program.complexity == min(n_inputs, n_parameters) + n_inputs - 1  # zeros leave nothing behind
+    check_weighted_sum(basic_tree(*counts), counts)
 
 
 @pytest.mark.parametrize("depth", [1, 2, 5])
