@@ -241,10 +241,18 @@ def status(text: str) -> Iterator[None]:
         yield
 
 
-def begin(folder: Path, seed: int) -> "Run":
-    """A run of this command line in a folder; raises FileError if it cannot be written to."""
-    from gpsynth import record
+def begin(folder: Path, seed: int, *, resume: bool = False) -> "Run":
+    """A run of this command line in a folder, or with `resume` the one that is there.
 
+    Raises FileError if the folder cannot be written to, or a new run would overwrite the checkpoint of an earlier one.
+    """
+    from gpsynth import record
+    from gpsynth.runs import FILE
+
+    if resume:
+        return record.Run(folder)
+    if (folder / FILE).exists():
+        raise FileError(f"{folder} holds the checkpoint of an earlier run: resume it, or name another folder")
     return record.begin(folder, sys.argv, seed=seed, release=__version__)
 
 
@@ -305,7 +313,7 @@ def recorder(folder: "Run", problem: "Problem") -> Callable[["Progress[SearchSta
     def record(progress: "Progress[SearchState[Any]]") -> None:
         nonlocal begun
         if not begun:
-            folder.rewind(progress.generation)
+            folder.rewind("synthesis", progress.generation)
             begun = True
         evaluations, cost = progress.history[-1] if progress.history else (0, float("inf"))
         folder.log(

@@ -8,7 +8,7 @@ island merges with the worst, the second best with the second worst.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import Any, Generic, TypeVar
 
 import joblib
 from joblib.externals.loky.process_executor import BrokenProcessPool
@@ -16,6 +16,7 @@ from joblib.externals.loky.process_executor import BrokenProcessPool
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers import Progress, Result, minimize
 from gpsynth.optimizers.bar import bar
+from gpsynth.runs import Outcome
 from gpsynth.structure_search import Cost, SearchState, StructureSearch
 
 G = TypeVar("G")
@@ -61,13 +62,6 @@ class Archipelago(Generic[G]):
         return SearchState((), ()) if best is None else best.state
 
 
-class Found(NamedTuple):
-    """Where the islands have come, and why they ended."""
-
-    progress: Archipelago[Any]
-    reason: str
-
-
 def search_islands(  # noqa: PLR0913 takes what `minimize` takes
     cost: Cost,
     strategy: StructureSearch[Any],
@@ -81,7 +75,7 @@ def search_islands(  # noqa: PLR0913 takes what `minimize` takes
     callback: Callback | None = None,
     checkpoint: Callable[[Archipelago[Any]], None] | None = None,
     resume: Archipelago[Any] | None = None,
-) -> Found:
+) -> Outcome:
     """The search after all levels, on each of which every island may spend the same share of the budget (evaluations).
 
     Islands run in `workers` processes through joblib, so `joblib.parallel_config(backend="dask")` sends them to a
@@ -116,7 +110,7 @@ def search_islands(  # noqa: PLR0913 takes what `minimize` takes
                 checkpoint(now)
             if callback is not None and callback(_whole(now, ranked[0].state)):
                 reason = "stopped by callback"
-    return Found(now, reason)
+    return Outcome(now, reason)
 
 
 def _results(tasks: Sequence[Any], workers: int) -> list[Any]:

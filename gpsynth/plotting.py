@@ -158,6 +158,20 @@ def plot_front(front: Sequence[Scored], *, ax: "Axes | None" = None) -> "Axes":
     return axes
 
 
+def plot_errors(
+    sizes: Sequence[int], errors: Floats, names: Sequence[str], *, ax: "Axes | None" = None
+) -> "Axes":
+    """Errors (f, k) of k outputs over the sizes of f formulas; what is below 1e-20 is rounding, and stands there."""
+    axes = _axes(ax)
+    for name, values, color in zip(names, errors.T, CYCLE * len(names), strict=False):
+        axes.step(sizes, np.maximum(values, 1e-20), "o-", where="post", color=color, markersize=4, label=name)
+    axes.set_xlabel("size (nodes)")
+    axes.set_ylabel("error (share of the variance)")
+    axes.set_yscale("log")
+    axes.locator_params("x", integer=True)
+    return with_legend(axes) if len(names) > 1 else axes
+
+
 def plot_tradeoff(
     points: Sequence[tuple[float, float]], names: tuple[str, str], *, ax: "Axes | None" = None
 ) -> "Axes":

@@ -46,9 +46,13 @@ class Run:
         except OSError as error:
             raise FileError(f"{path} cannot be written: {error.strerror}") from None
 
-    def rewind(self, generation: int) -> None:
-        """Drop what the log says from this generation on: a run that was killed logged more than it could keep."""
-        entries = [entry for entry in read_progress(self.folder) if entry["generation"] < generation]
+    def rewind(self, stage: str, generation: int = 1) -> None:
+        """Drop what the log says of a stage from this generation on: a run that was killed logged more than it kept."""
+        entries = [
+            entry
+            for entry in read_progress(self.folder)
+            if entry["stage"] != stage or entry["generation"] < generation
+        ]
         write_text(self.folder / PROGRESS, "".join(json.dumps(entry) + "\n" for entry in entries))
 
 

@@ -40,10 +40,14 @@ def run_search(
 
     With `resume` it goes on from that file, and finds bit for bit what a run without interruption finds. Ctrl-C ends
     the search after its first generation and raises KeyboardInterrupt before. Raises FileError if the checkpoint cannot
-    be read, or is of another run.
+    be read, is of another run, or would be overwritten.
     """
     if resume and checkpoint is None:
         raise FileError("there is no folder to resume from; name it, folder=...")
+    if checkpoint is not None and checkpoint.path.exists() and not resume:
+        raise FileError(
+            f"{checkpoint.path} is of an earlier run: go on with resume=True, or name another folder"
+        )
     latest: list[Any] = [checkpoint.read()] if checkpoint is not None and resume else []
     written = time.monotonic()
 

@@ -22,6 +22,9 @@ from gpsynth.cli import (
 PATH = click.Path(path_type=Path)
 SEED = 1  # of the law that comes along
 NO_PLAN = 3  # exit code where the goal is unreachable or no plan was found
+resume_option = click.option(
+    "--resume", is_flag=True, help="Go on with the synthesis in the run folder, other options being the same."
+)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -40,16 +43,17 @@ cli.add_command(export)
 @cli.command()
 @click.option("--out", type=PATH, default=Path("runs/rosbot"), show_default=True, help="Run folder.")
 @click.option("--short", is_flag=True, help="A small search, to see that everything works.")
+@resume_option
 @seed_option(SEED)
 @threads_option
-def demo(out: Path, short: bool, seed: int, threads: int) -> int:
+def demo(out: Path, short: bool, resume: bool, seed: int, threads: int) -> int:
     """Both stages on the paper's scenario.
 
     From scratch, with obstacles and without; the run folder holds the law, the plans and their pictures.
     """
     with status(LOADING):
         from applications.rosbot.demo import run_demo
-    plans = run_demo(out, seed=seed, short=short, threads=threads)
+    plans = run_demo(out, seed=seed, short=short, resume=resume, threads=threads)
     return 0 if all(each.is_found for each in plans) else NO_PLAN
 
 
@@ -57,14 +61,23 @@ def demo(out: Path, short: bool, seed: int, threads: int) -> int:
 @click.option("--out", type=PATH, default=Path("runs/stabilizer"), show_default=True, help="Run folder.")
 @click.option("--budget", type=click.IntRange(min=1), help="Evaluations. [default: as in the demo]")
 @click.option("--encoding", type=click.Choice(ENCODINGS), default="tree", show_default=True)
+@resume_option
 @seed_option(SEED)
 @threads_option
-def synthesize(out: Path, budget: int | None, encoding: EncodingName, seed: int, threads: int) -> None:
+def synthesize(
+    out: Path, budget: int | None, encoding: EncodingName, resume: bool, seed: int, threads: int
+) -> None:
     """Stage 1: find a stabilizer from scratch."""
     with status(LOADING):
         from applications.rosbot.stages import run_synthesis
-    folder = begin(out, seed)
-    result = run_synthesis(folder, seed=seed, budget=budget, encoding=encoding, threads=threads)
+    result = run_synthesis(
+        begin(out, seed, resume=resume),
+        seed=seed,
+        budget=budget,
+        encoding=encoding,
+        resume=resume,
+        threads=threads,
+    )
     click.echo(result.table())
     click.echo(f"the law of least cost, its exports and the front are in {out}")
 

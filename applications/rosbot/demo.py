@@ -22,11 +22,15 @@ SHORT_EFFORT = Effort(
 )
 
 
-def run_demo(out: Path, *, seed: int, short: bool, threads: int) -> list[SavedPlan]:
-    """Synthesize a stabilizer, plan both scenarios with it, draw and print; the plans, as they are in the folder."""
-    run = begin(out, seed)
+def run_demo(out: Path, *, seed: int, short: bool, resume: bool, threads: int) -> list[SavedPlan]:
+    """Synthesize a stabilizer, plan both scenarios with it, draw and print; the plans, as they are in the folder.
+
+    With `resume` the synthesis goes on from its checkpoint in the folder; the plans are made anew.
+    """
+    run = begin(out, seed, resume=resume)
     click.echo("stage 1: synthesis of the stabilizer")
-    result = run_synthesis(run, seed=seed, budget=SHORT_BUDGET if short else None, threads=threads)
+    budget = SHORT_BUDGET if short else None
+    result = run_synthesis(run, seed=seed, budget=budget, resume=resume, threads=threads)
     click.echo("\n".join(["", *result.law.formulas(), ""]))
     best = result.best
     click.echo(

@@ -104,6 +104,8 @@ def synthesize_stabilizer(
     seed: int,
     budget: int = SEARCH_BUDGET,
     encoding: Literal["tree", "cartesian", "network-operator"] = "tree",
+    folder: Path | None = None,
+    resume: bool = False,
     threads: int = 2,
     progress: bool = False,
     callback: Callable[[Progress[SearchState[Any]]], bool | None] | None = None,
@@ -111,7 +113,8 @@ def synthesize_stabilizer(
     """Find the stabilizer from scratch: a law that reaches every target and holds it.
 
     Searched on the dynamics of the robot from 64 starts, each under a draw of its own, at 0.1 s; tuned on 64 others at
-    0.05 s; scored on 256 more on the dynamics, and on the kinematics at 0.05 s and 0.005 s.
+    0.05 s; scored on 256 more on the dynamics, and on the kinematics at 0.05 s and 0.005 s. Checkpoints in `folder` and
+    `resume` are those of `synthesize`.
     """
     unseen = training_poses(stream(seed, _UNSEEN), 256)
     problem = stabilization(unseen, stop=False)
@@ -130,6 +133,8 @@ def synthesize_stabilizer(
         tuned=_training(seed, _TUNING, period=0.05, horizon=20.0),
         trials=trials,
         islands=ISLANDS if budget >= ENOUGH else None,
+        folder=folder,
+        resume=resume,
         threads=threads,
         progress=progress,
         callback=callback,

@@ -21,14 +21,25 @@ CONTROLS = ("v", "omega")
 
 
 def run_synthesis(
-    run: Run, *, seed: int, budget: int | None = None, encoding: EncodingName = "tree", threads: int = 1
+    run: Run,
+    *,
+    seed: int,
+    budget: int | None = None,
+    encoding: EncodingName = "tree",
+    resume: bool = False,
+    threads: int = 1,
 ) -> SynthesisResult:
-    """Stage 1 into a run folder: the law in every form, the front and the log; the best so far is there all along."""
+    """Stage 1 into a run folder: the law in every form, the front and the log; the best so far is there all along.
+
+    With `resume` it goes on from the folder's checkpoint, which must be of a run with the same settings.
+    """
     problem = stabilization(np.zeros((1, 3)))
     result = synthesize_stabilizer(
         seed=seed,
         budget=budget or SEARCH_BUDGET,
         encoding=encoding,
+        folder=run.folder,
+        resume=resume,
         threads=threads,
         progress=True,
         callback=recorder(run, problem),
@@ -74,5 +85,6 @@ def load_steering_law(path: Path) -> Law:
 
 def _log(run: Run, stage: str, report: PlanReport) -> None:
     """A line for each improvement: the cost of a plan is its arrival time (s)."""
+    run.rewind(stage)
     for number, (evaluations, arrival_time) in enumerate(report.history, start=1):
         run.log(stage, generation=number, evaluations=evaluations, best_cost=arrival_time)

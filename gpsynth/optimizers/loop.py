@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth.arrays import Floats
+from gpsynth.arrays import Floats, check_whole
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.bar import bar
 from gpsynth.optimizers.protocol import Batch, S, Search
@@ -95,10 +95,8 @@ def minimize(
 
 
 def _check(seed: int, budget: int, target: float) -> None:
-    if seed < 0:
-        raise OptimizerError(f"seed must be a whole number from 0 on, not {seed}")
-    if budget < 1:
-        raise OptimizerError(f"budget must be at least 1 evaluation, not {budget}")
+    check_whole("seed", seed, 0, OptimizerError)
+    check_whole("budget", budget, 1, OptimizerError)
     if isnan(target):
         raise OptimizerError("target must be a number, not NaN")
 

@@ -2,19 +2,21 @@
 
 import re
 import time
+from collections import Counter
 from collections.abc import Sequence
+from numbers import Real
 
 import numpy as np
 import numpy.typing as npt
 
 from gpsynth import seeds
-from gpsynth.arrays import Floats
+from gpsynth.arrays import Floats, check_whole
 from gpsynth.errors import RegressionError
 from gpsynth.kernels.data_code import NAMES
 from gpsynth.program import NAME
 from gpsynth.regression.expressions import number, program_of
-from gpsynth.regression.front import choose
-from gpsynth.regression.polish import data_of
+from gpsynth.regression.joint import Joint, choose, joined
+from gpsynth.regression.polish import Data, data_of
 from gpsynth.regression.result import Formula, RegressionResult
 from gpsynth.regression.search import Budget, search
 from gpsynth.regression.state import State
@@ -31,61 +33,89 @@ def regress(
     *,
     functions: Sequence[str] = FUNCTIONS,
     names: Sequence[str] | None = None,
-    target_name: str = "y",
+    target_name: str | Sequence[str] = "y",
     weights: npt.ArrayLike | None = None,
     evaluations: int = EVALUATIONS,
     seconds: float | None = None,
     seed: int = 0,
 ) -> RegressionResult:
-    """Formulas for target (n,) from inputs (n, m), a front of size and error.
+    """Formulas for target (n,) or targets (n, k) from inputs (n, m), a front of size and error.
 
     The search ends when a formula is exact up to rounding and none smaller turns up, or after `evaluations` formulas
     have been scored on rows of data; the same seed gives the same result then. `seconds` of processor time end it
-    earlier, and how far it comes is no longer the same on every machine. Weights (n,) are not negative. Raises
-    RegressionError for what does not fit together.
+    earlier, and how far it comes is no longer the same on every machine. Weights (n,) are not negative.
+
+    Of several targets one is searched after the other, each with an equal share of what is left of the budget, and
+    their fronts become one (`gpsynth/regression/joint.py:joined`): every formula of it has k outputs, and what two
+    of them share is computed and counted once. `target_name` gives k names then, or begins them: y0, y1, ...
+    Raises RegressionError for what does not fit together.
     """
-    rows, y = _matrix(inputs), _vector("target", target)
-    if len(y) != len(rows):
-        raise RegressionError(f"inputs have {len(rows)} rows and the target has {len(y)}")
-    given = np.ones(len(y)) if weights is None else _vector("weights", weights)
-    if len(given) != len(y) or np.any(given < 0.0) or not np.any(given > 0.0):
-        raise RegressionError(f"expected {len(y)} weights, none negative and one positive")
-    unknown = [name for name in functions if name not in NAMES]
+    rows, targets = _matrix(inputs), _targets(target)
+    if len(targets) != len(rows):
+        raise RegressionError(f"inputs have {len(rows)} rows and the target has {len(targets)}")
+    given = np.ones(len(rows)) if weights is None else _vector("weights", weights)
+    if len(given) != len(rows) or np.any(given < 0.0) or not np.any(given > 0.0):
+        raise RegressionError(f"expected {len(rows)} weights, none negative and one positive")
+    unknown = [str(name) for name in functions if name not in NAMES]
     if unknown or not functions:
         raise RegressionError(f"functions are some of {', '.join(NAMES)}; not {', '.join(unknown) or 'none'}")
-    if evaluations < 1 or (seconds is not None and not seconds > 0.0):
-        raise RegressionError(f"the budget is positive, not {evaluations} evaluations and {seconds} seconds")
-    if not isinstance(seed, int | np.integer) or seed < 0:
-        raise RegressionError(f"seed must be a whole number from 0 on, not {seed!r}")
-    labels = (
-        column_names(names, rows.shape[1]) if names is None else _checked(names, rows.shape[1], target_name)
+    check_whole("evaluations", evaluations, 1, RegressionError)
+    check_whole("seed", seed, 0, RegressionError)
+    if seconds is not None and not (isinstance(seconds, Real) and seconds > 0.0):
+        raise RegressionError(f"seconds must be a positive number or None, not {seconds!r}")
+    labels, outputs = _names(names, target_name, rows.shape[1], targets.shape[1])
+    begin, spent = time.process_time(), 0
+    rows, targets, given = merged(rows, targets, given)
+    states: list[State] = []
+    for y in targets.T:
+        left = targets.shape[1] - len(states)
+        budget = Budget(
+            (evaluations - spent) // left,
+            None if seconds is None else (seconds - (time.process_time() - begin)) / left,
+        )
+        states.append(_searched(data_of(rows, y, given), frozenset(functions), budget, seed))
+        spent += states[-1].evaluations
+    front = joined([state.members() for state in states])
+    return RegressionResult(
+        tuple(_formula(joint, labels, outputs) for joint in front),
+        front.index(choose(front, len(rows))),
+        spent,
+        time.process_time() - begin,
+        _history(states, outputs),
     )
-    begin = time.process_time()
-    library = min(LARGEST_LIBRARY, max(SMALLEST_LIBRARY, evaluations // 500))
-    state = State(data_of(*merged(rows, y, given)), frozenset(functions), seeds.stream(seed), library)
+
+
+def _searched(data: Data, functions: frozenset[str], budget: Budget, seed: int) -> State:
+    library = min(LARGEST_LIBRARY, max(SMALLEST_LIBRARY, budget.evaluations // 500))
+    state = State(data, functions, seeds.stream(seed), library)
     if state.data.total > 0.0 and len(state.y) > 1:
         state.consider([number(float(state.y.mean()))], "constant")
-        search(state, Budget(evaluations, seconds))
-        front = state.front.members()
-    else:
-        front = [state.constant()]
-    best = choose(front, len(state.y))
-    return RegressionResult(
-        tuple(Formula(program_of(c.expression, labels, target_name), c.error, c.size) for c in front),
-        front.index(best),
-        state.evaluations,
-        time.process_time() - begin,
-        tuple(state.found),
-    )
+        search(state, budget)
+    return state
 
 
-def merged(rows: Floats, y: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
+def _formula(joint: Joint, labels: tuple[str, ...], outputs: tuple[str, ...]) -> Formula:
+    program = program_of([part.expression for part in joint.parts], labels, outputs)
+    return Formula(program, tuple(part.error for part in joint.parts), joint.size)
+
+
+def _history(states: Sequence[State], outputs: tuple[str, ...]) -> tuple[tuple[int, str, float], ...]:
+    """What was found for one output after the other."""
+    history, before = [], 0
+    for state, name in zip(states, outputs, strict=True):
+        ending = f" for {name}" if len(outputs) > 1 else ""
+        history += [(before + count, source + ending, error) for count, source, error in state.found]
+        before += state.evaluations
+    return tuple(history)
+
+
+def merged(rows: Floats, targets: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
     """Rows in one order, equal ones once with the sum of their weights, so that weights mean repetition."""
-    used = weights > 0.0
-    whole = np.column_stack((rows[used], y[used]))
+    used, inputs = weights > 0.0, rows.shape[1]
+    whole = np.column_stack((rows[used], targets[used]))
     unique, place = np.unique(whole, axis=0, return_inverse=True)
     together = np.bincount(place.ravel(), weights=weights[used]).astype(np.float64)
-    return np.ascontiguousarray(unique[:, :-1]), np.ascontiguousarray(unique[:, -1]), together
+    return np.ascontiguousarray(unique[:, :inputs]), unique[:, inputs:], together
 
 
 def column_names(names: Sequence[str] | None, count: int) -> tuple[str, ...]:
@@ -97,11 +127,31 @@ def column_names(names: Sequence[str] | None, count: int) -> tuple[str, ...]:
     return tuple(name if cleaned.count(name) == 1 else f"{name}_{j}" for j, name in enumerate(cleaned))
 
 
-def _checked(names: Sequence[str], count: int, target_name: str) -> tuple[str, ...]:
-    wrong = [name for name in (*names, target_name) if not NAME.match(name)]
-    if wrong or len(names) != count or len({*names, target_name}) != count + 1:
-        raise RegressionError(f"expected {count} different names besides {target_name!r}, got {tuple(names)}")
-    return tuple(names)
+def output_names(name: str | Sequence[str], count: int) -> tuple[str, ...]:
+    """The names of the targets, those of several being numbered if they are not given."""
+    if not isinstance(name, str):
+        return tuple(name)
+    return (name,) if count == 1 else tuple(f"{name}{k}" for k in range(count))
+
+
+def _names(
+    names: Sequence[str] | None, target_name: str | Sequence[str], inputs: int, outputs: int
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The names of inputs and targets, which must all be different."""
+    labels = column_names(None, inputs) if names is None else tuple(names)
+    targets = output_names(target_name, outputs)
+    for what, given, count in (("columns", labels, inputs), ("targets", targets, outputs)):
+        if len(given) != count:
+            raise RegressionError(
+                f"there are {len(given)} names for {count} {what}: {', '.join(map(str, given))}"
+            )
+    for name in (*labels, *targets):
+        if not isinstance(name, str) or not NAME.match(name):
+            raise RegressionError(f"{name!r} is not a name: a letter or _, then letters, digits and _")
+    twice = [name for name, times in Counter((*labels, *targets)).items() if times > 1]
+    if twice:
+        raise RegressionError(f"columns and targets need different names; {', '.join(twice)} is there twice")
+    return labels, targets
 
 
 def _matrix(values: npt.ArrayLike) -> Floats:
@@ -109,6 +159,14 @@ def _matrix(values: npt.ArrayLike) -> Floats:
     if rows.ndim != 2 or 0 in rows.shape:
         raise RegressionError(f"inputs have shape {rows.shape}; expected (n, m), n and m at least 1")
     return rows
+
+
+def _targets(values: npt.ArrayLike) -> Floats:
+    """One column for each target."""
+    columns = _numbers("target", values)
+    if columns.ndim not in (1, 2) or 0 in columns.shape[1:]:
+        raise RegressionError(f"target has shape {columns.shape}; expected (n,) or (n, k), k at least 1")
+    return columns.reshape(len(columns), -1)
 
 
 def _vector(what: str, values: npt.ArrayLike) -> Floats:

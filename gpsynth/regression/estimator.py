@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from gpsynth.arrays import Floats
 from gpsynth.errors import RegressionError
-from gpsynth.regression.entry import EVALUATIONS, FUNCTIONS, column_names, regress
+from gpsynth.regression.entry import EVALUATIONS, FUNCTIONS, column_names, output_names, regress
 from gpsynth.regression.result import RegressionResult
 
 try:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class SymbolicRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
-    """A formula for y, found by `gpsynth.regress`.
+    """A formula for y, or one for each column of y together, found by `gpsynth.regress`.
 
     Fitted: `result_` (RegressionResult), `formula_` (text), `n_features_in_` and, from data frames,
     `feature_names_in_`. What does not fit raises ValueError, as scikit-learn's estimators do.
@@ -45,8 +45,10 @@ class SymbolicRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.random_state = random_state
 
     def fit(self, X: npt.ArrayLike, y: npt.ArrayLike, sample_weight: npt.ArrayLike | None = None) -> "Self":
-        """Search formulas for y (n,) of X (n, m)."""
-        X, y = validate_data(self, X, y, y_numeric=True, dtype=np.float64, ensure_min_samples=2)
+        """Search formulas for y (n,) or (n, k) of X (n, m)."""
+        X, y = validate_data(
+            self, X, y, multi_output=True, y_numeric=True, dtype=np.float64, ensure_min_samples=2
+        )
         weights = (
             None
             if sample_weight is None
@@ -61,7 +63,7 @@ class SymbolicRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
                 np.asarray(y, dtype=np.float64),
                 functions=self.functions,
                 names=column_names(getattr(self, "feature_names_in_", None), np.shape(X)[1]),
-                target_name=_free("y", getattr(self, "feature_names_in_", ())),
+                target_name=_free("y", np.shape(y), getattr(self, "feature_names_in_", ())),
                 weights=weights,
                 evaluations=self.evaluations,
                 seconds=self.seconds,
@@ -72,13 +74,19 @@ class SymbolicRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         self.formula_ = str(self.result_.best)
         return self
 
+    def __sklearn_tags__(self) -> Any:
+        """What scikit-learn asks an estimator about itself: y may have several columns."""
+        tags = super().__sklearn_tags__()
+        tags.target_tags.multi_output = True
+        return tags
+
     def predict(self, X: npt.ArrayLike) -> Floats:
-        """The chosen formula (n,) on X (n, m); NaN where it is not defined."""
+        """The chosen formula (n,), or (n, k) for k > 1 targets, on X (n, m); NaN where it is not defined."""
         check_is_fitted(self)
         return self.result_.predict(validate_data(self, X, reset=False, dtype=np.float64))
 
 
-def _free(name: str, taken: Sequence[str]) -> str:
-    while name in list(taken):
-        name += "_"
-    return name
+def _free(name: str, shape: tuple[int, ...], taken: Sequence[str]) -> tuple[str, ...]:
+    """Names for the targets of this shape that no column has."""
+    found = output_names(name, shape[1] if len(shape) > 1 else 1)
+    return _free(f"{name}_", shape, taken) if set(found) & set(taken) else found

@@ -121,8 +121,8 @@ def expression_of(population: Population, root: int) -> Expression:
 _NAMES = {code: name for name, code in OPCODE.items()}
 
 
-def program_of(expression: Expression, inputs: Sequence[str], name: str = "y") -> Program:
-    """The program with these inputs."""
+def program_of(expressions: Sequence[Expression], inputs: Sequence[str], names: Sequence[str]) -> Program:
+    """The program with these inputs, `names` being those of its outputs; what is computed twice is so once."""
     builder = Builder(inputs)
 
     def write(node: Expression) -> int:
@@ -132,7 +132,7 @@ def program_of(expression: Expression, inputs: Sequence[str], name: str = "y") -
             return builder.constant(node[1])
         return builder.apply(node[0], *(write(operand) for operand in node[1:]))
 
-    return builder.build([write(expression)], (name,))
+    return builder.build([write(expression) for expression in expressions], names)
 
 
 def evaluate(expressions: Sequence[Expression], inputs: Floats) -> Floats:

@@ -1,13 +1,12 @@
-"""The Pareto front of error and size, and which of it is chosen."""
+"""The Pareto front of error and size."""
 
 import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from gpsynth.regression.expressions import Expression, numbers
+from gpsynth.regression.expressions import Expression
 
 EXACT = 1e-20  # errors below are rounding
-NATS_A_NODE = 2.5  # ln 12: a node is one of about a dozen symbols
 
 
 class Candidate(NamedTuple):
@@ -54,15 +53,3 @@ class Front:
     def error(self) -> float:
         """The least error so far."""
         return min((candidate.error for candidate in self._best.values()), default=math.inf)
-
-
-def choose(front: list[Candidate], rows: int) -> Candidate:
-    """The shortest description of the data: n / 2 ln error, 2.5 for each node and ln(n) / 2 for each number."""
-    return min(front, key=lambda candidate: description_length(candidate, rows))
-
-
-def description_length(candidate: Candidate, rows: int) -> float:
-    """In nats, up to a constant of the data (Rissanen 1978)."""
-    count = sum(1 for _ in numbers(candidate.expression))
-    fit = 0.5 * rows * math.log(max(candidate.error, EXACT))
-    return fit + NATS_A_NODE * candidate.size + 0.5 * math.log(rows) * count

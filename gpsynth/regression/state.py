@@ -58,8 +58,11 @@ class State:
         """Whether what is left is rounding."""
         return self.front.error < EXACT
 
-    def constant(self) -> Candidate:
-        """The mean, for data that leave nothing to explain."""
+    def members(self) -> list[Candidate]:
+        """The front; where there was nothing to explain it is the mean."""
+        return self.front.members() or [self._constant()]
+
+    def _constant(self) -> Candidate:
         weights = self.data.weights[: len(self.y)]
         return Candidate(number(float(weights @ self.y / weights.sum())), 0.0, 1)
 

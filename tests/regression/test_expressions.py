@@ -54,7 +54,7 @@ def test_a_square_counts_as_the_product_it_stands_for() -> None:
 def test_a_program_computes_the_expression() -> None:
     rows = np.random.default_rng(7).uniform(0.5, 2.0, (9, 2))
     tree = ("div", ("sin", ("mul", X, Y)), ("add", number(2.0), X))
-    assert np.array_equal(program_of(tree, ("x", "y"))(rows)[:, 0], evaluate([tree], rows)[0])
+    assert np.array_equal(program_of([tree], ("x", "y"), ("z",))(rows)[:, 0], evaluate([tree], rows)[0])
 
 
 def test_enumerated_formulas_have_the_values_of_their_trees_and_none_is_there_twice() -> None:

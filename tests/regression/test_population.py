@@ -50,7 +50,8 @@ def test_a_population_is_each_of_its_programs_bit_for_bit() -> None:
     rng = np.random.default_rng(2)
     rows = rng.normal(size=(70, 3))
     programs = [
-        program_of(random_expression(rng, int(rng.integers(1, 30)), 3), ("a", "b", "c")) for _ in range(60)
+        program_of([random_expression(rng, int(rng.integers(1, 30)), 3)], ("a", "b", "c"), ("y",))
+        for _ in range(60)
     ]
     found = values_of(population(programs), rows)
     for values, program in zip(found, programs, strict=True):

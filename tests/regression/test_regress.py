@@ -6,7 +6,8 @@ import pytest
 import gpsynth
 from gpsynth.errors import RegressionError
 from gpsynth.export import to_sympy
-from gpsynth.regression.front import Candidate, choose
+from gpsynth.regression.front import Candidate
+from gpsynth.regression.joint import choose, joined
 
 RNG = np.random.default_rng(9)
 ROWS = RNG.uniform(0.5, 3.0, (60, 3))
@@ -61,8 +62,8 @@ def test_the_choice_is_the_shortest_description() -> None:
     small = Candidate(("variable", 0), 1e-2, 1)
     barely_better = Candidate(("add", ("variable", 0), ("variable", 1)), 0.0099, 9)
     much_better = Candidate(("mul", ("variable", 0), ("variable", 1)), 1e-6, 9)
-    assert choose([small, barely_better], 30) == small
-    assert choose([small, much_better], 30) == much_better
+    assert choose(joined([[small, barely_better]]), 30).parts == (small,)
+    assert choose(joined([[small, much_better]]), 30).parts == (much_better,)
 
 
 def test_a_result_goes_to_the_exporters() -> None:
@@ -87,9 +88,9 @@ def test_a_constant_target_is_its_value() -> None:
         ({"target": np.full(60, np.nan)}, "finite"),
         ({"functions": ("add", "gamma")}, "not gamma"),
         ({"weights": -np.ones(60)}, "60 weights"),
-        ({"names": ("a", "b")}, "3 different names"),
-        ({"names": ("a", "b", "__import__('os')")}, "different names"),
-        ({"evaluations": 0}, "budget is positive"),
+        ({"names": ("a", "b")}, "2 names for 3 columns"),
+        ({"names": ("a", "b", "__import__('os')")}, r"\"__import__\('os'\)\" is not a name"),
+        ({"evaluations": 0}, "evaluations must be a whole number from 1 on, not 0"),
     ],
 )
 def test_what_does_not_fit_is_one_sentence(settings, message) -> None:
