@@ -229,6 +229,16 @@ def test_ctrl_c_is_130_and_the_run_can_be_resumed(capsys, monkeypatch, plant_fil
         assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
 
 
+def test_a_run_is_not_overwritten(capsys, plant_file, tmp_path):
+    out = tmp_path / "run"
+    arguments = ["synthesize", str(plant_file()), "--out", str(out), "--budget", "450"]
+    assert main(arguments) == 0
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    capsys.readouterr()
+    _fails(capsys, arguments, f"{out} holds the checkpoint of an earlier run: resume it, or name another folder")
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [

@@ -107,3 +107,11 @@ def test_another_run_is_not_resumed(tmp_path):
     assert not (tmp_path / "elsewhere").exists()
     with pytest.raises(FileError, match="there is no folder to resume from"):
         resumed(None)
+
+
+def test_a_checkpoint_is_not_overwritten(tmp_path, whole):
+    stop = {"callback": lambda progress: progress.generation == 2}
+    synthesize(PROBLEM, encoding(PROBLEM), folder=tmp_path, **SETTINGS, **stop)
+    with pytest.raises(FileError, match=r"checkpoint\.json is of an earlier run: go on with resume=True, or"):
+        synthesize(PROBLEM, encoding(PROBLEM), folder=tmp_path, **SETTINGS)
+    same(resumed(tmp_path), whole)

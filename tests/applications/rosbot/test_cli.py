@@ -14,7 +14,7 @@ from applications.rosbot.__main__ import cli, main
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.polar_law import polar_law
 from gpsynth.law import Law
-from gpsynth.record import read_progress
+from gpsynth.record import Run, read_progress
 
 SCENARIO = {
     "format": "rosbot-scenario/1",
@@ -294,6 +294,37 @@ def test_the_demo_leaves_a_whole_run_folder(capsys, tmp_path):
         assert f"{plan['arrival_time']:.2f}" in text
     stages = {entry["stage"] for entry in read_progress(tmp_path)}
     assert stages == {"synthesis", "plan paper", "plan paper_empty"}
+
+
+@pytest.mark.slow
+def test_a_synthesis_that_was_interrupted_goes_on_and_nothing_overwrites_it(capsys, monkeypatch, tmp_path):
+    log, out = Run.log, tmp_path / "run"
+    short = ("--budget", "900", "--seed", "3", "--threads", "1")
+
+    def interrupted(self, stage, *, generation, evaluations, best_cost):
+        log(self, stage, generation=generation, evaluations=evaluations, best_cost=best_cost)
+        if generation == 2:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Run, "log", interrupted)
+    assert _run("synthesize", "--out", out, *short) == 130
+    monkeypatch.setattr(Run, "log", log)
+    capsys.readouterr()
+    for command in ("synthesize", "demo"):
+        _fails(capsys, command, "--out", out, sentence=["holds the checkpoint of an earlier run: resume it"])
+    _fails(
+        capsys,
+        *("synthesize", "--out", out, "--resume", "--seed", "4"),
+        sentence=["checkpoint.json", "another seed"],
+    )
+    assert _run("synthesize", "--out", out, "--resume", *short) == 0
+    assert _run("synthesize", "--out", tmp_path / "whole", *short) == 0
+    for name in ("law.json", "front.json"):
+        assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_there_is_nothing_to_resume_in_an_empty_folder(capsys, tmp_path):
+    _fails(capsys, "synthesize", "--out", tmp_path, "--resume", sentence=["checkpoint.json does not exist"])
 
 
 @pytest.mark.parametrize("command", [[], *([name] for name in cli.commands)])
