@@ -235,7 +235,9 @@ def test_a_run_is_not_overwritten(capsys, plant_file, tmp_path):
     assert main(arguments) == 0
     before = {path.name: path.read_bytes() for path in out.iterdir()}
     capsys.readouterr()
-    _fails(capsys, arguments, f"{out} holds the checkpoint of an earlier run: resume it, or name another folder")
+    _fails(
+        capsys, arguments, f"{out} holds the checkpoint of an earlier run: resume it, or name another folder"
+    )
     assert {path.name: path.read_bytes() for path in out.iterdir()} == before
 
 

@@ -9,22 +9,19 @@ from numbers import Real
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth import seeds
 from gpsynth.arrays import Floats, check_whole
 from gpsynth.errors import RegressionError
 from gpsynth.kernels.data_code import NAMES
 from gpsynth.program import NAME
-from gpsynth.regression.expressions import number, program_of
+from gpsynth.regression.expressions import program_of
 from gpsynth.regression.joint import Joint, choose, joined
-from gpsynth.regression.polish import Data, data_of
 from gpsynth.regression.result import Formula, RegressionResult
-from gpsynth.regression.search import Budget, search
-from gpsynth.regression.state import State
+from gpsynth.regression.search import Budget
+from gpsynth.regression.several import Found, search_each
 
 FUNCTIONS = ("add", "sub", "mul", "div", "sin", "cos", "exp", "log", "sqrt")
 EVALUATIONS = 300_000_000
 LARGEST = 1e50
-SMALLEST_LIBRARY, LARGEST_LIBRARY = 300, 20_000  # enumerated formulas; small budgets get small libraries
 
 
 def regress(
@@ -45,9 +42,10 @@ def regress(
     have been scored on rows of data; the same seed gives the same result then. `seconds` of processor time end it
     earlier, and how far it comes is no longer the same on every machine. Weights (n,) are not negative.
 
-    Of several targets one is searched after the other, each with an equal share of what is left of the budget, and
-    their fronts become one (`gpsynth/regression/joint.py:joined`): every formula of it has k outputs, and what two
-    of them share is computed and counted once. `target_name` gives k names then, or begins them: y0, y1, ...
+    Several targets are searched one after the other, each with an equal share of the budget, what those before it have
+    left, and parts of their formulas as columns (`gpsynth/regression/several.py:search_each`). Their fronts become one
+    (`gpsynth/regression/joint.py:joined`): each formula of it has k outputs, and what two of them share is computed and
+    counted once. `target_name` gives k names then, or begins them: y0, y1, ...
     Raises RegressionError for what does not fit together.
     """
     rows, targets = _matrix(inputs), _targets(target)
@@ -64,34 +62,18 @@ def regress(
     if seconds is not None and not (isinstance(seconds, Real) and seconds > 0.0):
         raise RegressionError(f"seconds must be a positive number or None, not {seconds!r}")
     labels, outputs = _names(names, target_name, rows.shape[1], targets.shape[1])
-    begin, spent = time.process_time(), 0
+    begin = time.process_time()
     rows, targets, given = merged(rows, targets, given)
-    states: list[State] = []
-    for y in targets.T:
-        left = targets.shape[1] - len(states)
-        budget = Budget(
-            (evaluations - spent) // left,
-            None if seconds is None else (seconds - (time.process_time() - begin)) / left,
-        )
-        states.append(_searched(data_of(rows, y, given), frozenset(functions), budget, seed))
-        spent += states[-1].evaluations
-    front = joined([state.members() for state in states])
+    budget = Budget(int(evaluations), seconds)
+    found = search_each(rows, targets, given, frozenset(functions), budget=budget, seed=seed)
+    front = joined([each.front for each in found])
     return RegressionResult(
         tuple(_formula(joint, labels, outputs) for joint in front),
         front.index(choose(front, len(rows))),
-        spent,
+        sum(each.evaluations for each in found),
         time.process_time() - begin,
-        _history(states, outputs),
+        _history(found, outputs),
     )
-
-
-def _searched(data: Data, functions: frozenset[str], budget: Budget, seed: int) -> State:
-    library = min(LARGEST_LIBRARY, max(SMALLEST_LIBRARY, budget.evaluations // 500))
-    state = State(data, functions, seeds.stream(seed), library)
-    if state.data.total > 0.0 and len(state.y) > 1:
-        state.consider([number(float(state.y.mean()))], "constant")
-        search(state, budget)
-    return state
 
 
 def _formula(joint: Joint, labels: tuple[str, ...], outputs: tuple[str, ...]) -> Formula:
@@ -99,13 +81,13 @@ def _formula(joint: Joint, labels: tuple[str, ...], outputs: tuple[str, ...]) ->
     return Formula(program, tuple(part.error for part in joint.parts), joint.size)
 
 
-def _history(states: Sequence[State], outputs: tuple[str, ...]) -> tuple[tuple[int, str, float], ...]:
-    """What was found for one output after the other."""
+def _history(found: Sequence[Found], outputs: tuple[str, ...]) -> tuple[tuple[int, str, float], ...]:
+    """What was found for one target after the other."""
     history, before = [], 0
-    for state, name in zip(states, outputs, strict=True):
+    for each, name in zip(found, outputs, strict=True):
         ending = f" for {name}" if len(outputs) > 1 else ""
-        history += [(before + count, source + ending, error) for count, source, error in state.found]
-        before += state.evaluations
+        history += [(before + count, source + ending, error) for count, source, error in each.history]
+        before += each.evaluations
     return tuple(history)
 
 

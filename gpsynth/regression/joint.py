@@ -24,7 +24,7 @@ class Joint:
         found = []
         for part in self.parts:
             found.append(_cut(part.expression, known))
-            known.update(_operations(part.expression))
+            known.update(operations(part.expression))
         return tuple(found)
 
     @cached_property
@@ -64,12 +64,12 @@ def description_length(joint: Joint, rows: int) -> float:
     return 0.5 * rows * joint.loss + NATS_A_NODE * joint.size + 0.5 * math.log(rows) * count
 
 
-def _operations(expression: Expression) -> Iterator[Expression]:
+def operations(expression: Expression) -> Iterator[Expression]:
     """The operations of a tree, itself included."""
     if expression[0] not in {"variable", "number"}:
         yield expression
         for operand in expression[1:]:
-            yield from _operations(operand)
+            yield from operations(operand)
 
 
 def _cut(expression: Expression, known: set[Expression]) -> Expression:

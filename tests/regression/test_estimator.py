@@ -30,3 +30,20 @@ def test_without_scikit_learn_there_is_one_sentence() -> None:
     code = "import sys; sys.modules['sklearn'] = None; import gpsynth; gpsynth.SymbolicRegressor"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert "RegressionError: SymbolicRegressor needs scikit-learn" in done.stderr
+
+
+def test_several_columns_of_y_are_several_formulas() -> None:
+    rows = np.random.default_rng(1).uniform(1, 3, (50, 2))
+    y = np.column_stack((rows[:, 0] * rows[:, 1], rows[:, 0] - rows[:, 1]))
+    model = SymbolicRegressor(evaluations=200_000).fit(rows, y)
+    assert model.predict(rows).shape == (50, 2)
+    assert model.score(rows, y) == pytest.approx(1.0)
+    assert model.formula_ == "y0 = x0 * x1; y1 = x0 - x1"
+
+
+def test_targets_do_not_take_the_names_of_columns() -> None:
+    pandas = pytest.importorskip("pandas", reason="pandas is not installed")
+    rows = pandas.DataFrame({"y": [1.0, 2.0, 4.0, 5.0], "y0": [2.0, 1.0, 3.0, 7.0]})
+    model = SymbolicRegressor(evaluations=2_000)
+    assert model.fit(rows, rows["y"]).result_.program.names == ("y_",)
+    assert model.fit(rows, rows).result_.program.names == ("y_0", "y_1")
