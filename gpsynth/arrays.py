@@ -1,11 +1,11 @@
 """The two array types of the package: float64 and int32, C order; and how a user's numbers become one."""
 
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth.errors import GpsynthError, ProblemError
+from gpsynth.errors import ProblemError
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -18,12 +18,6 @@ def frozen(array: npt.NDArray[_Scalar]) -> npt.NDArray[_Scalar]:
     copy = np.array(array, order="C")
     copy.setflags(write=False)
     return copy
-
-
-def check_whole(name: str, value: Any, least: int, error: type[GpsynthError] = ProblemError) -> None:
-    """Raises the error unless the value is an integer of at least `least`."""
-    if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < least:
-        raise error(f"{name} must be a whole number from {least} on, not {value!r}")
 
 
 def numbers(name: str, values: npt.ArrayLike) -> Floats:

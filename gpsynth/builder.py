@@ -5,6 +5,7 @@ from typing import cast
 
 import numpy as np
 
+from gpsynth.checks import check_kind, check_names, check_number
 from gpsynth.errors import ProgramError
 from gpsynth.operations import CODES, OPERATIONS, operation
 from gpsynth.program import UNUSED, Program
@@ -22,8 +23,8 @@ class Builder:
     """
 
     def __init__(self, inputs: Sequence[str], parameters: Sequence[str] = ()) -> None:
-        self._inputs = tuple(inputs)
-        self._parameters = tuple(parameters)
+        self._inputs = check_names("inputs", inputs, ProgramError)
+        self._parameters = check_names("parameters", parameters, ProgramError)
         self._keys: list[_Key] = []
         self._known: dict[_Key, Reference] = {}
         self.inputs: list[Reference] = [self._value(("input", i)) for i in range(len(self._inputs))]
@@ -33,7 +34,10 @@ class Builder:
 
     def constant(self, value: float) -> Reference:
         """A constant; distinct bits are distinct values, so -0.0 is not 0.0."""
-        return self._value(("constant", float(value).hex()))
+        try:
+            return self._value(("constant", float(value).hex()))
+        except (TypeError, ValueError):
+            raise ProgramError(f"a constant is a number, got {value!r}") from None
 
     def apply(self, name: str, *operands: Reference) -> Reference:
         """The value of an operation; raises OperationError or ProgramError if name or operands are wrong."""
@@ -142,12 +146,15 @@ class Builder:
 
 def simplify(program: Program) -> Program:
     """The same function, bit for bit, without dead code, common subexpressions and constant arithmetic."""
+    check_kind("program", program, Program, error=ProgramError)
     builder = Builder(program.inputs, program.parameters)
     return builder.build(builder.inline(program, builder.inputs, builder.parameters), program.names)
 
 
 def compose(outer: Program, inner: Program) -> Program:
     """outer(inner(x)): the outputs of `inner` are the inputs of `outer`; parameters of inner come first."""
+    check_kind("outer", outer, Program, error=ProgramError)
+    check_kind("inner", inner, Program, error=ProgramError)
     builder = Builder(inner.inputs, inner.parameters + outer.parameters)
     split = len(inner.parameters)
     values = builder.inline(inner, builder.inputs, builder.parameters[:split])
@@ -156,6 +163,9 @@ def compose(outer: Program, inner: Program) -> Program:
 
 def bind(program: Program, parameters: Sequence[float]) -> Program:
     """The program with its parameters replaced by these numbers."""
+    check_kind("program", program, Program, error=ProgramError)
+    for value in parameters:
+        check_number("a parameter", value, ProgramError)
     builder = Builder(program.inputs)
     values = [builder.constant(value) for value in parameters]
     return builder.build(builder.inline(program, builder.inputs, values), program.names)

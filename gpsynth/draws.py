@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats, Ints, frozen, numbers, shaped
+from gpsynth.checks import check_kind, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.plant import Plant
 
@@ -61,6 +62,7 @@ class Draws:
 
 def crossed(starts: npt.ArrayLike, draws: Draws) -> tuple[Floats, Draws]:
     """Every start (S, n) under every one of D draws: starts (D S, n) and their draws, all starts of a draw together."""
+    check_kind("draws", draws, Draws)
     places = shaped("starts", np.atleast_2d(numbers("starts", starts)), (-1, -1))
     rows = np.repeat(np.arange(len(draws)), len(places))
     repeated = Draws(
@@ -81,9 +83,18 @@ def random_draws(
     """`count` draws of the plant's parameters and of the delay (s), uniform in their ranges and spread evenly.
 
     Each range is cut into `count` equal parts, of which every draw takes another (Latin hypercube). `noise` gives the
-    standard deviation of the normal error of each state, (n,) or one number: a table of `ticks` samples a draw.
+    standard deviation of the normal error of each state, (n,) or one number: a table of `ticks` samples a draw. Raises
+    ProblemError for what makes no sense.
     """
-    bounds = np.array([[low, high] for _, low, high, _ in plant.parameters.values()] + [list(delay)])
+    check_kind("plant", plant, Plant)
+    check_kind("rng", rng, np.random.Generator)
+    check_whole("count", count, 1)
+    check_whole("ticks", ticks, 1)
+    shortest, longest = shaped("the range of the delay, (shortest, longest) in s,", delay, (2,))
+    if not 0.0 <= shortest <= longest:
+        raise ProblemError(f"the delay must have 0 <= shortest <= longest, got {delay!r}")
+    ranges = [[low, high] for _, low, high, _ in plant.parameters.values()]
+    bounds = np.array([*ranges, [shortest, longest]])
     parts = np.column_stack([rng.permutation(count) for _ in bounds])
     shares = (parts + rng.random(parts.shape)) / count
     values = bounds[:, 0] + shares * (bounds[:, 1] - bounds[:, 0])

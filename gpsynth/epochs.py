@@ -8,6 +8,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind, check_whole
 from gpsynth.encodings.protocol import Rebasable
 from gpsynth.errors import OptimizerError
 from gpsynth.structure_search import Candidate, Individual, SearchState, StructureSearch, pareto
@@ -38,8 +39,8 @@ class Epochs(Generic[G]):
     seeds: tuple[G, ...] = ()  # formulas to begin with, beside those of the search
 
     def __post_init__(self) -> None:
-        if self.every < 1:
-            raise OptimizerError(f"every must be at least 1 generation, not {self.every}")
+        check_kind("search", self.search, StructureSearch, error=OptimizerError)
+        check_whole("every", self.every, 1, OptimizerError)
         if not isinstance(self.search.encoding, Rebasable):
             kind = type(self.search.encoding).__name__
             raise OptimizerError(f"epochs need an encoding with a basic solution; {kind} has none")

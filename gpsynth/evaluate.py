@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats, frozen
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
 from gpsynth.kernels.layout import Clock, Conditions, Lanes, World, sealed
@@ -73,10 +74,10 @@ class Evaluator:
     margin: float = 0.0
 
     def __post_init__(self) -> None:
+        check_kind("problem", self.problem, Problem)
         for name in ("threads", "block"):
-            value = getattr(self, name)
-            if not isinstance(value, int | np.integer) or value < 1:
-                raise ProblemError(f"{name} must be an integer of at least 1, got {value!r}")
+            check_whole(name, getattr(self, name), 1)
+        check_number("the margin", self.margin)
         if not 0.0 <= self.margin < np.inf:
             raise ProblemError(f"the margin must be finite and at least 0 m, got {self.margin}")
 
@@ -90,6 +91,7 @@ class Evaluator:
         is kept.
         """
         problem = self.problem
+        check_kind("program", program, Program)
         if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
             raise ProblemError(
                 f"the program computes {len(program.outputs)} values from {_listed(program.inputs)}; expected "
@@ -237,6 +239,7 @@ class Evaluator:
 
     def until(self, horizon: float, *, reach: float = 0.0, bound: float = np.inf) -> Clock:
         """The time grid up to the horizon (s); raises ProblemError unless that, and the reach, are sensible numbers."""
+        check_number("the reach", reach)
         if not reach >= 0.0:
             raise ProblemError(f"the reach must be at least 0, got {reach}")
         return self.clock._replace(periods=periods_of(self.problem, horizon), reach=reach, bound=bound)
@@ -273,6 +276,7 @@ def roll(evaluator: Evaluator, program: Program, lanes: Lanes, clock: Clock, tra
 
 def periods_of(problem: Problem, horizon: float) -> int:
     """The control periods until the horizon (s); raises ProblemError unless that is a sensible number."""
+    check_number("the horizon", horizon)
     if not 0.0 <= horizon <= MOST_PERIODS * problem.period:
         raise ProblemError(
             f"the horizon is {horizon} s; expected at least 0 and at most {MOST_PERIODS} periods of "
@@ -283,6 +287,8 @@ def periods_of(problem: Problem, horizon: float) -> int:
 
 def check_law(problem: Problem, law: Law) -> None:
     """Raises ProblemError unless the law is for the problem's plant, limits included, and sees its features."""
+    check_kind("problem", problem, Problem)
+    check_kind("law", law, Law)
     if law.plant is not problem.plant or law.features is not problem.features:
         _check_content(problem, law)
 

@@ -39,6 +39,8 @@ def genomes_of(guesses: Sequence[Guess], encoding: Any) -> tuple[Any, ...]:
     For a template the guesses are formulas of its holes. Raises EncodingError, FormulaError or TracingError, saying
     which guess it is about.
     """
+    if not isinstance(guesses, list | tuple):
+        raise FormulaError(f"guesses are formulas in a list, got {guesses!r}")
     if isinstance(encoding, TemplateEncoding):
         encoding = encoding.holes
     if guesses and not isinstance(encoding, ReadsPrograms):

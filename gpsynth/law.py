@@ -17,6 +17,7 @@ import numpy.typing as npt
 from gpsynth import formula
 from gpsynth.arrays import Floats, frozen
 from gpsynth.builder import Builder, bind
+from gpsynth.checks import check_kind
 from gpsynth.errors import FileError, GpsynthError, LawError
 from gpsynth.files import read_json, write_json
 from gpsynth.plant import Plant
@@ -42,7 +43,12 @@ class Law:
     parameters: Floats  # (p,) of program
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "parameters", frozen(np.asarray(self.parameters, dtype=np.float64)))
+        for name, kind in (("plant", Plant), ("features", Program), ("program", Program)):
+            check_kind(f"the {name} of a law", getattr(self, name), kind, error=LawError)
+        try:
+            object.__setattr__(self, "parameters", frozen(np.asarray(self.parameters, dtype=np.float64)))
+        except (TypeError, ValueError):
+            raise LawError(f"the parameters of a law are numbers, got {self.parameters!r}") from None
         _check(self)
 
     @cached_property
@@ -84,7 +90,10 @@ class Law:
 
         Raises LawError if a shape does not fit.
         """
-        states, targets = np.asarray(x, dtype=np.float64), np.asarray(target, dtype=np.float64)
+        try:
+            states, targets = np.asarray(x, dtype=np.float64), np.asarray(target, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise LawError(f"x and target must hold numbers, got {x!r} and {target!r}") from None
         size = len(self.plant.state_names)
         for name, array in (("x", states), ("target", targets)):
             if array.ndim not in (1, 2) or array.shape[-1] != size:

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_function
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.program import Program
@@ -26,12 +27,15 @@ class Objective:
     function: Function
     paths: bool = False
 
+    def __post_init__(self) -> None:
+        check_function("an objective", self.function)
+
     def __call__(self, rollouts: Rollouts) -> Floats:
         """Costs (N, S); raises ProblemError if the function returns another shape or no numbers."""
         shape = rollouts.cost.shape
         try:
             costs = np.asarray(self.function(rollouts), dtype=np.float64)
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, AttributeError, IndexError) as error:
             raise ProblemError(f"the objective fails on rollouts of shape {shape}: {error}") from None
         if costs.shape != shape:
             raise ProblemError(f"the objective returns shape {costs.shape}; expected {shape}, laws by starts")
@@ -51,8 +55,6 @@ def as_objective(given: Objective | Function | None) -> Objective:
     """The objective that a user means: none is that of the problem; raises ProblemError for what is no function."""
     if given is None:
         return PROBLEMS_OWN
-    if not callable(given):
-        raise ProblemError(f"an objective is a function of rollouts, got {given!r}")
     return given if isinstance(given, Objective) else Objective(given)
 
 

@@ -105,7 +105,7 @@ class Plant:
                 f"expected ({len(self.controls)},) each, for {', '.join(self.controls)}"
             )
         rows = zip(self.controls.items(), lower, upper, strict=True)
-        controls = {key: (unit, float(low), float(high)) for (key, (unit, _, _)), low, high in rows}
+        controls = {key: (unit, low, high) for (key, (unit, _, _)), low, high in rows}
         return replace(self, controls=controls)
 
     def __eq__(self, other: object) -> bool:

@@ -47,8 +47,9 @@ def check_names(
 
 def check_angles(name: str, states: Mapping[str, str], angles: Sequence[str]) -> None:
     """Angles are different states."""
-    wrong = [angle for angle in angles if not isinstance(angle, str) or angle not in states]
-    if isinstance(angles, str) or wrong or len(set(angles)) < len(angles):
+    is_list = isinstance(angles, tuple | list)
+    wrong = is_list and [angle for angle in angles if not isinstance(angle, str) or angle not in states]
+    if not is_list or wrong or len(set(angles)) < len(angles):
         raise PlantError(
             f"the angles of {name} must be different states out of {', '.join(states)}, got {angles!r}"
         )

@@ -19,6 +19,7 @@ from gpsynth.program import Program
 from gpsynth.signs import nonnegative
 from gpsynth.tracing import Names, input_names, takes_time, trace, wrap_angle
 
+MOST_STEPS = 1_000_000  # of a period
 METHODS = ("euler", "heun", "rk4")
 Method = Literal["euler", "heun", "rk4"]
 Function = Callable[..., Any]
@@ -249,7 +250,8 @@ def _check_obstacles(obstacles: Obstacles) -> None:
     x_low, x_high, y_low, y_high = obstacles.bounds
     if not (x_low < x_high and y_low < y_high):
         raise ProblemError(f"bounds are x low, x high, y low, y high, got {obstacles.bounds.tolist()}")
-    if not isinstance(obstacles.position, tuple) or len(set(obstacles.position)) != 2:
+    names = obstacles.position
+    if not isinstance(names, tuple) or {*map(type, names)} != {str} or len({*names}) != 2:
         raise ProblemError(f"position names two different states, got {obstacles.position!r}")
 
 
@@ -262,6 +264,10 @@ def _check(problem: Problem) -> None:
         raise ProblemError(f"tolerance must be positive, got {problem.tolerance.tolist()}")
     if problem.method not in METHODS:
         raise ProblemError(f"there is no method {problem.method!r}; expected one of {', '.join(METHODS)}")
+    if problem.period > MOST_STEPS * problem.step:
+        raise ProblemError(
+            f"the step, {problem.step} s, is too short; a period, {problem.period} s, has at most {MOST_STEPS} steps"
+        )
     steps = round(problem.period / problem.step)
     if steps < 1 or abs(steps * problem.step - problem.period) > 1e-9 * problem.period:
         raise ProblemError(

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_whole
+from gpsynth.errors import OptimizerError
 from gpsynth.evaluate import Evaluator, check_law
 from gpsynth.law import Law
 from gpsynth.notation import fresh_names
@@ -38,6 +40,8 @@ def refit(
     plant and features, OptimizerError for a budget below one generation.
     """
     check_law(problem, law)
+    check_whole("seed", seed, 0, OptimizerError)
+    check_whole("budget", budget, 1, OptimizerError)
     program = without_constants(law.program) if constants else law.program
     values = np.concatenate([law.parameters, law.program.constants]) if constants else law.parameters
     if len(values) == 0:

@@ -3,10 +3,12 @@
 import os
 import time
 from collections.abc import Callable, Mapping
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from gpsynth.checkpoint import Checkpoint
+from gpsynth.checkpoint import Checkpoint, fingerprint
+from gpsynth.checks import check_kind
 from gpsynth.errors import FileError
 from gpsynth.optimizers import Progress, Search, minimize
 
@@ -80,6 +82,12 @@ def run_search(
     return outcome
 
 
-def checkpoint_in(folder: str | os.PathLike[str], settings: Mapping[str, str]) -> Checkpoint:
-    """The checkpoint of a run folder."""
-    return Checkpoint(Path(folder) / FILE, settings)
+def checkpoint_in(
+    folder: str | os.PathLike[str] | None, parts: Mapping[str, Any], seed: int
+) -> Checkpoint | None:
+    """The checkpoint of a run folder, if there is one, for a run that has all `parts`, the seed and the release."""
+    if folder is None:
+        return None
+    check_kind("folder", folder, str, os.PathLike)
+    hashes = {name: fingerprint(part) for name, part in parts.items()}
+    return Checkpoint(Path(folder) / FILE, {**hashes, "seed": str(seed), "release": version("gpsynth")})

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gpsynth.arrays import check_whole
+from gpsynth.checks import check_whole
 from gpsynth.errors import OptimizerError
 
 

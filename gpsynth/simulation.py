@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, check_law, numbers, periods_of, roll
 from gpsynth.kernels import rollout
@@ -62,7 +63,9 @@ def simulate(  # noqa: PLR0913 names each choice as a keyword
     """
     check_law(problem, law)
     states = len(problem.plant.state_names)
-    if not 0 <= row < len(problem.starts):
+    check_whole("row", row, 0)
+    check_kind("schedule", schedule, Schedule, optional=True)
+    if row >= len(problem.starts):
         raise ProblemError(f"there is no row {row}; the problem has {len(problem.starts)} starts")
     starts = problem.starts.copy()
     if start is not None:

@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from importlib.metadata import version
 from itertools import groupby
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -13,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
-from gpsynth.checkpoint import fingerprint
+from gpsynth.checks import check_function, check_kind, check_whole
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.epochs import Epochs
@@ -158,10 +157,13 @@ def synthesize(
     or FormulaError if a guess is no formula of the encoding, FileError if the folder's checkpoint is of another run.
     """
     check_encoding(problem, encoding)
-    if not (islands is None or isinstance(islands, Islands)):
-        raise ProblemError(f"islands are given as gpsynth.Islands(...), got {islands!r}")
-    if not isinstance(threads, int) or threads < 1:
-        raise ProblemError(f"threads must be an integer of at least 1, got {threads!r}")
+    check_search(seed, budget, threads, callback)
+    check_whole("tuning", tuning, 0)
+    check_kind("islands", islands, Islands, optional=True)
+    check_kind("search", search, StructureSearch, Epochs, VariationalGA, optional=True)
+    check_kind("trials", trials, list, tuple)
+    for name, other in (("rough", rough), ("tuned", tuned), *(("a trial", each) for each in trials)):
+        check_kind(name, other, Problem, optional=name != "a trial")
     shape = None if islands is None else (islands, budget)  # shares depend on the budget
     wanted = as_objective(objective)
     strategy: Any = search or StructureSearch(encoding)
@@ -170,13 +172,18 @@ def synthesize(
             f"islands merge, which a {type(strategy).__name__} cannot; use a StructureSearch, or no islands"
         )
     strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
+    parts = {
+        "problem": problem,
+        "rough problem": rough,
+        "search": strategy,
+        "objective": wanted,
+        "number of islands or their budget": shape,
+    }
     cost = BatchCost(rough or problem, threads if islands is None else 1, wanted)
     found, reason = run_search(
         cost,
         strategy,
-        None
-        if folder is None
-        else checkpoint_in(folder, _identity(problem, rough, strategy, wanted, shape, seed)),
+        checkpoint_in(folder, parts, seed),
         run=minimize if islands is None else partial(search_islands, islands=islands, workers=threads),
         resume=resume,
         seed=seed,
@@ -201,34 +208,24 @@ def synthesize(
     return SynthesisResult(_front(entries), found.evaluations, found.history, reason)
 
 
-def _identity(
-    problem: Problem,
-    rough: Problem | None,
-    search: Any,
-    objective: Objective,
-    islands: tuple[Islands, int] | None,
-    seed: int,
-) -> dict[str, str]:
-    """What two runs must have in common for one to go on where the other stopped."""
-    parts = {
-        "problem": problem,
-        "rough problem": rough,
-        "search": search,
-        "objective": objective,
-        "number of islands or their budget": islands,
-    }
-    hashes = {name: fingerprint(part) for name, part in parts.items()}
-    return {**hashes, "seed": str(seed), "release": version("gpsynth")}
-
-
 def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:
     """Raises ProblemError unless the encoding maps the problem's features to its controls."""
+    check_kind("problem", problem, Problem)
+    check_kind("encoding", encoding, Encoding)
     features, controls = problem.features.names, problem.plant.control_names
     if encoding.inputs != features or encoding.outputs != controls:
         raise ProblemError(
             f"the encoding maps {encoding.inputs} to {encoding.outputs}; the problem has features {features} "
             f"and controls {controls}"
         )
+
+
+def check_search(seed: int, budget: int, threads: int, callback: object) -> None:
+    """Raises ProblemError unless these are settings that a search can run with."""
+    check_whole("seed", seed, 0)
+    check_whole("budget", budget, 1)
+    check_whole("threads", threads, 1)
+    check_function("callback", callback, optional=True)
 
 
 @dataclass(frozen=True, eq=False)

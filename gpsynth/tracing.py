@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from gpsynth.builder import Builder, Reference
+from gpsynth.checks import check_kind
 from gpsynth.errors import GpsynthError, ProgramError, TracingError
 from gpsynth.program import NAME, Program
 from gpsynth.symbols import Symbol, Vector, elementwise, is_traced
@@ -74,6 +75,8 @@ def inline(program: Program, values: Sequence[Any]) -> tuple[Symbol, ...]:
     So a function that is traced may use what was found before. Raises TracingError if no value is traced, ProgramError
     if their number is not that of the inputs, or the program has parameters.
     """
+    check_kind("program", program, Program, error=TracingError)
+    check_kind("values", values, list, tuple, Vector, error=TracingError)
     known = next((value for value in values if isinstance(value, Symbol)), None)
     if known is None:
         raise TracingError(

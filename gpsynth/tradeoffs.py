@@ -4,13 +4,12 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from gpsynth.arrays import Floats
-from gpsynth.checkpoint import fingerprint
+from gpsynth.checks import check_kind
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
@@ -23,7 +22,7 @@ from gpsynth.problem import Problem
 from gpsynth.program import Program
 from gpsynth.runs import checkpoint_in, run_search
 from gpsynth.structure_search import Candidate
-from gpsynth.synthesis import check_encoding
+from gpsynth.synthesis import check_encoding, check_search
 from gpsynth.tables import write_csv
 
 if TYPE_CHECKING:
@@ -102,21 +101,17 @@ def synthesize_tradeoffs(
     that does not fit the problem.
     """
     check_encoding(problem, encoding)
+    check_search(seed, budget, threads, callback)
+    check_kind("objectives, functions by name,", objectives, Mapping)
+    check_kind("search", search, ParetoSearch, optional=True)
     if len(objectives) < 2:
         raise ProblemError(f"expected two objectives or more, got {', '.join(objectives) or 'none'}")
     wanted = {name: as_objective(given) for name, given in objectives.items()}
     strategy = search or ParetoSearch(encoding)
-    identity = {
-        **{
-            name: fingerprint(part)
-            for name, part in (("problem", problem), ("search", strategy), ("objectives", wanted))
-        },
-        **{"seed": str(seed), "release": version("gpsynth")},
-    }
     found, reason = run_search(
         _cost(Evaluator(problem), tuple(wanted.values()), threads),
         strategy,
-        None if folder is None else checkpoint_in(folder, identity),
+        checkpoint_in(folder, {"problem": problem, "search": strategy, "objectives": wanted}, seed),
         resume=resume,
         seed=seed,
         budget=budget,

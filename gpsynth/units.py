@@ -9,7 +9,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import count
 
+from gpsynth.checks import check_kind
 from gpsynth.dimensions import Dimension, alike, dimension, powers, product, pure, text
+from gpsynth.errors import UnitError
 from gpsynth.formula import TEXT
 from gpsynth.law import Law
 from gpsynth.plant import Plant
@@ -44,6 +46,7 @@ def check_units(source: Law | Plant) -> UnitReport:
 
     Raises UnitError for a unit that cannot be read.
     """
+    check_kind("what check_units is given", source, Law, Plant, error=UnitError)
     equations = _Equations()
     if isinstance(source, Plant):
         known = _of_plant(source)

@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from gpsynth.arrays import Floats, Ints, frozen
+from gpsynth.checks import check_kind, check_whole
 from gpsynth.encodings.variational import VariationalEncoding, VariationalGenome
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.domination import dominates, domination_ranks, nearest_to_utopia
@@ -63,9 +64,9 @@ class VariationalGA:
 
     def __post_init__(self) -> None:
         least = {"population": 2, "couples": 1, "picks": 0, "epoch": 0, "elite": 0}
+        check_kind("encoding", self.encoding, VariationalEncoding, error=OptimizerError)
         for name, value in least.items():
-            if getattr(self, name) < value:
-                raise OptimizerError(f"{name} must be at least {value}, not {getattr(self, name)}")
+            check_whole(name, getattr(self, name), value, OptimizerError)
         for name in ("attraction", "mutation"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise OptimizerError(f"{name} must lie in [0, 1], not {getattr(self, name)}")

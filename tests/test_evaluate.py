@@ -163,9 +163,9 @@ def test_schedules_that_do_not_fit_are_refused(points: Floats, dwell: Floats, se
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"block": 0}, "block must be an integer of at least 1, got 0"),
+        ({"block": 0}, "block must be an integer of at least 1, not 0"),
         ({"block": 8.0}, "block must be an integer"),
-        ({"threads": 0}, "threads must be an integer of at least 1, got 0"),
+        ({"threads": 0}, "threads must be an integer of at least 1, not 0"),
         ({"margin": np.nan}, "the margin must be finite and at least 0 m, got nan"),
         ({"margin": -0.1}, "the margin must be"),
     ],

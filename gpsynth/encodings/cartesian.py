@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from gpsynth.arrays import Floats, Ints
 from gpsynth.builder import Builder
+from gpsynth.checks import check_kind
 from gpsynth.encodings.checks import checked_at_least, checked_names, checked_operations
 from gpsynth.encodings.parameters import ParameterSpace, Values
 from gpsynth.errors import EncodingError
@@ -45,6 +46,7 @@ class CartesianEncoding:
     def __post_init__(self) -> None:
         checked_names(self.inputs, self.outputs)
         checked_operations(self.operations)
+        check_kind("space of an encoding", self.space, ParameterSpace, error=EncodingError)
         checked_at_least("columns", self.columns, 1)
         if self.gene_rate is not None and not 0 < self.gene_rate <= 1:
             raise EncodingError(f"gene_rate must lie in (0, 1], not {self.gene_rate}")

@@ -2,6 +2,7 @@
 
 import re
 
+from gpsynth.checks import check_whole
 from gpsynth.errors import EncodingError
 from gpsynth.operations import CODES
 from gpsynth.program import NAME
@@ -12,7 +13,7 @@ _PARAMETER = re.compile(r"q\d+\Z")
 def checked_names(inputs: tuple[str, ...], outputs: tuple[str, ...]) -> None:
     """Raises EncodingError unless there are inputs and outputs, all with names a program can have."""
     for kind, names in (("inputs", inputs), ("outputs", outputs)):
-        if isinstance(names, str) or len(names) == 0:
+        if not isinstance(names, tuple | list) or len(names) == 0:
             raise EncodingError(f"{kind} must be one name or more in a tuple, not {names!r}")
         for name in names:
             if not isinstance(name, str) or not NAME.match(name):
@@ -28,10 +29,10 @@ def checked_names(inputs: tuple[str, ...], outputs: tuple[str, ...]) -> None:
 
 def checked_operations(operations: tuple[str, ...]) -> None:
     """Raises EncodingError unless these are different rows of the table of operations, at least one."""
-    if isinstance(operations, str) or len(operations) == 0:
+    if not isinstance(operations, tuple | list) or len(operations) == 0:
         raise EncodingError(f"operations must be one name or more in a tuple, not {operations!r}")
     for name in operations:
-        if name not in CODES:
+        if not isinstance(name, str) or name not in CODES:
             raise EncodingError(f"there is no operation {name!r}; the table has {', '.join(CODES)}")
     if len(set(operations)) < len(operations):
         raise EncodingError(f"each operation may be named once, got {', '.join(operations)}")
@@ -39,5 +40,4 @@ def checked_operations(operations: tuple[str, ...]) -> None:
 
 def checked_at_least(name: str, value: int, least: int) -> None:
     """Raises EncodingError unless value is an integer >= least."""
-    if not isinstance(value, int) or value < least:
-        raise EncodingError(f"{name} must be an integer of at least {least}, not {value!r}")
+    check_whole(name, value, least, EncodingError)

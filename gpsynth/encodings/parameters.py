@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import EncodingError
 
 Values = tuple[float, ...]
@@ -22,8 +23,9 @@ class ParameterSpace:
     rate: float = 0.5  # how often a mutation moves a number instead of changing the structure
 
     def __post_init__(self) -> None:
-        if self.count < 0:
-            raise EncodingError(f"the count of parameters must be at least 0, not {self.count}")
+        check_whole("the count of parameters", self.count, 0, EncodingError)
+        for name in ("lower", "upper", "step", "rate"):
+            check_number(f"{name} of a ParameterSpace", getattr(self, name), EncodingError)
         if not (self.lower < self.upper and math.isfinite(self.upper - self.lower)):
             raise EncodingError(
                 f"parameters need lower < upper, both finite; got lower {self.lower}, upper {self.upper}"

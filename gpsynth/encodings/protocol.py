@@ -12,6 +12,7 @@ from gpsynth.program import Program
 G = TypeVar("G")
 
 
+@runtime_checkable
 class Encoding(Protocol[G]):
     """Settings of a space of formulas; genomes are values and are never changed in place.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from math import inf
 from types import MappingProxyType
 
+from gpsynth.checks import check_kind, check_names
 from gpsynth.encodings.checks import checked_at_least
 from gpsynth.errors import EncodingError
 from gpsynth.operations import operation
@@ -28,9 +29,10 @@ class Rules:
     weights: Mapping[str, int] = field(default_factory=dict, hash=False)  # nodes it counts as, if not 1
 
     def __post_init__(self) -> None:
+        for field_name in ("forbid", "limits", "weights"):
+            check_kind(f"{field_name} of Rules", getattr(self, field_name), Mapping, error=EncodingError)
         for name, inner in self.forbid.items():
-            if isinstance(inner, str):
-                raise EncodingError(f"what may not stand within {name} are names in a tuple, not {inner!r}")
+            check_names(f"what may not stand within {name}", inner, EncodingError)
         for name, most in self.limits.items():
             checked_at_least(f"the limit of {name}", most, 0)
         for name, weight in self.weights.items():

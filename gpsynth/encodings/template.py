@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from gpsynth.arrays import Floats
 from gpsynth.builder import Builder
+from gpsynth.checks import check_names
 from gpsynth.encodings.checks import checked_names
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
@@ -41,7 +42,12 @@ class TemplateEncoding(Generic[G]):
         *,
         inputs: Sequence[str] | None = None,
     ) -> None:
-        inputs, outputs = tuple(holes.inputs if inputs is None else inputs), tuple(outputs)
+        if not isinstance(holes, Encoding):
+            raise EncodingError(
+                f"the holes of a template are an encoding such as TreeEncoding(...), got {holes!r}"
+            )
+        outputs = check_names("outputs", outputs, EncodingError)
+        inputs = check_names("inputs", holes.inputs if inputs is None else inputs, EncodingError)
         checked_names(inputs, outputs)
         unseen = [name for name in holes.inputs if name not in inputs]
         if unseen:

@@ -13,6 +13,7 @@ from deap import gp
 
 from gpsynth.arrays import Floats
 from gpsynth.builder import Builder, Reference
+from gpsynth.checks import check_kind
 from gpsynth.encodings.checks import checked_at_least, checked_names, checked_operations
 from gpsynth.encodings.parameters import ParameterSpace, Values
 from gpsynth.encodings.rules import Rules
@@ -63,6 +64,12 @@ class TreeEncoding:
     def __post_init__(self) -> None:
         checked_names(self.inputs, self.outputs)
         checked_operations(self.operations)
+        for name, kind in (("space", ParameterSpace), ("rules", Rules)):
+            check_kind(f"{name} of an encoding", getattr(self, name), kind, error=EncodingError)
+        for name in ("symmetries", "units"):
+            check_kind(
+                f"{name} of an encoding", getattr(self, name), Mapping, error=EncodingError, optional=True
+            )
         checked_at_least("max_height", self.max_height, 0)
         checked_at_least("max_size", self.max_size, 1)
         _ = self._constraints  # checks rules and units

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats, Ints
+from gpsynth.checks import check_kind
 from gpsynth.encodings.checks import checked_at_least, checked_names, checked_operations
 from gpsynth.encodings.gray import crossed, moved
 from gpsynth.encodings.network_operator_basis import basic_operator
@@ -46,11 +47,14 @@ class VariationalEncoding:
     def __post_init__(self) -> None:
         checked_names(self.inputs, self.outputs)
         checked_operations(self.operations)
+        check_kind("space of an encoding", self.space, ParameterSpace, error=EncodingError)
         checked_at_least("n_variations", self.n_variations, 1)
         checked_at_least("gray_bits", self.gray_bits, 0)
         expected = len(self.inputs), self.space.count, len(self.outputs)
         if self.basis is None:
             object.__setattr__(self, "basis", basic_operator(*expected))
+        if not hasattr(self.basis, "counts"):
+            raise EncodingError(f"basis must be a basic solution or None, got {self.basis!r}")
         if self._basis.counts != expected:
             came = self._basis.counts
             raise EncodingError(

@@ -74,7 +74,8 @@ def to_c(law: Law, name: str = "law", vectors: tuple[Floats, Floats] | None = No
 def check_name(name: str) -> None:
     """Raise LawError unless `name` can name a C function beside ours."""
     if (
-        not _NAME.match(name)
+        not isinstance(name, str)
+        or not _NAME.match(name)
         or name.startswith("gp_")
         or name in _RESERVED.split()
         or re.match(r"r\d+\Z", name)

@@ -9,7 +9,8 @@ from math import exp, pi
 from types import MappingProxyType
 
 from gpsynth.builder import bind
-from gpsynth.errors import MissingPackageError
+from gpsynth.checks import check_kind
+from gpsynth.errors import LawError, MissingPackageError, ProgramError
 from gpsynth.law import Law
 from gpsynth.operations import Operation
 from gpsynth.program import Leaf, Program
@@ -26,8 +27,14 @@ _LN_LARGE = 18.420680743952367
 def to_casadi(source: Law | Program, name: str = "law") -> ca.Function:
     """A casadi Function of the law, (state, target) -> control, or of a program, (inputs, parameters) -> outputs.
 
-    All are column vectors. A law is given with its numbers and its limits. Raises MissingPackageError without casadi.
+    All are column vectors. A law is given with its numbers and its limits. Raises LawError for a name that
+    casadi does not take, MissingPackageError without casadi.
     """
+    check_kind("what to_casadi is given", source, Law, Program, error=ProgramError)
+    if not isinstance(name, str) or not ca.Function.check_name(name):
+        raise LawError(
+            f"{name!r} cannot name a casadi function: a letter, then letters, digits, single _; not null, jac or hess"
+        )
     if isinstance(source, Law):
         program = bind(source.complete, source.parameters.tolist())
         size = len(source.plant.state_names)

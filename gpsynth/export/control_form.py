@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from gpsynth.arrays import Floats
-from gpsynth.errors import MissingPackageError
+from gpsynth.checks import check_kind
+from gpsynth.errors import LawError, MissingPackageError
 from gpsynth.law import Law
 
 try:
@@ -22,6 +23,7 @@ def to_control(law: Law) -> control.NonlinearIOSystem:
     The law acts at every instant and not once a period, as `simulate` does for a problem with hold=False; angles are
     not wrapped. Raises MissingPackageError without python-control.
     """
+    check_kind("law", law, Law, error=LawError)
     plant = law.plant
     size = len(plant.state_names)
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from gpsynth.builder import Builder
+from gpsynth.checks import check_kind
+from gpsynth.errors import LawError
 from gpsynth.law import Law
 from gpsynth.operations import Operation
 from gpsynth.program import Program
@@ -93,6 +95,7 @@ def assigned(
 
 def _with_features(law: Law) -> tuple[Program, dict[int, str]]:
     """The complete law with its numbers; the outputs are the controls, then the features, to tell which is which."""
+    check_kind("law", law, Law, error=LawError)
     builder = Builder(law.features.inputs)
     features = builder.inline(law.features, builder.inputs)
     controls = builder.inline(law.bounded, features)

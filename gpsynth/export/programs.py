@@ -5,6 +5,7 @@ What holds for exported laws holds here: the C and the Python compute the same b
 
 from textwrap import indent
 
+from gpsynth.checks import check_kind
 from gpsynth.errors import ProgramError
 from gpsynth.export import c, python_form
 from gpsynth.export.elementary_c import HEADERS, c_number
@@ -39,12 +40,17 @@ def program_to_c(program: Program, name: str = "formula") -> str:
 
 
 def program_to_python(program: Program, name: str = "formula") -> str:
-    """A module with one function, NAME(x), that gives the tuple of outputs; it needs the standard library alone."""
+    """A module with one function, NAME(x), that gives the tuple of outputs; it needs the standard library alone.
+
+    Raises LawError if `name` cannot name it.
+    """
     c.check_name(name)
     lines = _listing(
         program, Syntax(python_form.python_number, python_form.written, element="float({0}[{1}])")
     )
     called = [operation for operation in lines.operations if operation not in OPERATORS]
+    definitions = python_form.definitions(called)
+    python_form.check_name(name, definitions)
     body = [
         *(
             f"{item.name} = {item.value}" + (f"  # {item.remark}" if item.remark else "")
@@ -57,7 +63,7 @@ def program_to_python(program: Program, name: str = "formula") -> str:
             f'"""{", ".join(program.names)} of {", ".join(program.inputs)}."""',
             "",
             python_form.IMPORTS,
-            *python_form.definitions(called),
+            *definitions,
             "",
             f"def {name}(x: Sequence[float]) -> tuple[float, ...]:",
             indent("\n".join(body), "    "),
@@ -68,6 +74,7 @@ def program_to_python(program: Program, name: str = "formula") -> str:
 
 def program_to_latex(program: Program) -> str:
     """The program as an align* environment (it needs amsmath), one line for each intermediate value and output."""
+    check_kind("program", program, Program, error=ProgramError)
     names = symbols((*program.inputs, *program.parameters, *program.names))
     rows = spell(program, notation(names), fresh_names("z", program), largest=10)
     lines = " \\\\\n".join(f"  {names.get(left, symbol(left))} &= {right.text}" for left, right in rows)
@@ -75,6 +82,7 @@ def program_to_latex(program: Program) -> str:
 
 
 def _listing(program: Program, syntax: Syntax) -> Listing:
+    check_kind("program", program, Program, error=ProgramError)
     if program.parameters:
         raise ProgramError(
             f"the program has parameters, {', '.join(program.parameters)}; bind them to numbers first"

@@ -5,13 +5,17 @@ the square root of a negative number; both are written out, so that nothing is e
 """
 
 import ast
+import builtins
 import inspect
+import keyword
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping
 from textwrap import indent
 from types import MappingProxyType
 from typing import Any
 
+from gpsynth.errors import LawError
 from gpsynth.export.listing import OPERATORS, Syntax, listing
 from gpsynth.export.reading import header_lines
 from gpsynth.kernels.elementary import function_of
@@ -81,6 +85,18 @@ def to_python(law: Law, name: str = "law") -> str:
             "",
         ]
     )
+
+
+def check_name(name: str, definitions: Iterable[str]) -> None:
+    """Raises LawError if a function beside these definitions cannot be called so."""
+    taken = {
+        *dir(builtins),
+        *re.findall(r"(?:^|\n)(?:def |import |from \S+ import )?(\w+)", "\n".join([IMPORTS, *definitions])),
+    }
+    if keyword.iskeyword(name) or name in taken:
+        raise LawError(
+            f"{name!r} cannot name a Python function here: it is a keyword, or something else is called so"
+        )
 
 
 def python_number(value: float) -> str:

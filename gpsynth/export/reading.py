@@ -4,6 +4,8 @@ import re
 from dataclasses import replace
 from typing import TypeVar
 
+from gpsynth.checks import check_kind
+from gpsynth.errors import LawError
 from gpsynth.law import Law
 from gpsynth.notation import Notation, fresh_names, spell
 from gpsynth.operations import OPERATIONS
@@ -24,6 +26,7 @@ def printable(text: str) -> str:
 
 def header_lines(law: Law, name: str) -> list[str]:
     """What a reader of an exported file must know: plant, content hash, states, controls, units, limits."""
+    check_kind("law", law, Law, error=LawError)
     plant = law.plant
     states = [
         f"  state[{index}], target[{index}]: {_with_unit(state, unit)}"
@@ -54,6 +57,7 @@ def spell_law(
 
     A feature that is nothing but the state or target of its name is left out.
     """
+    check_kind("law", law, Law, error=LawError)
     names = fresh_names("z", law.features, law.bounded)
     used = {operand for _, operands in law.bounded.instructions for operand in operands}
     used.update(law.bounded.outputs.tolist())

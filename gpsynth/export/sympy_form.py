@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import sympy as sp
 
+from gpsynth.checks import check_kind
 from gpsynth.errors import ProgramError
 from gpsynth.export.reading import spell_law
 from gpsynth.law import Law
@@ -44,6 +45,7 @@ def to_sympy(source: Law | Program, *, expanded: bool = False) -> SympyForm:
     A law is given from states and targets to saturated controls, with its numbers. With `expanded` there are no
     replacements; raises ProgramError if that would write out more than 2000 operations.
     """
+    check_kind("what to_sympy is given", source, Law, Program, error=ProgramError)
     program = source.complete if isinstance(source, Law) else source
     if expanded and tree_size(program) > LARGEST_EXPANSION:
         raise ProgramError(

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats, frozen
+from gpsynth.checks import check_number
 from gpsynth.errors import OptimizerError
 
 _Scalar = TypeVar("_Scalar", bound=np.generic)
@@ -13,7 +14,12 @@ _Scalar = TypeVar("_Scalar", bound=np.generic)
 
 def checked_box(lower: npt.ArrayLike, upper: npt.ArrayLike) -> tuple[Floats, Floats]:
     """Both bounds as read-only vectors; raises OptimizerError unless lower < upper everywhere."""
-    low, high = frozen(np.asarray(lower, np.float64)), frozen(np.asarray(upper, np.float64))
+    try:
+        low, high = frozen(np.asarray(lower, np.float64)), frozen(np.asarray(upper, np.float64))
+    except (TypeError, ValueError):
+        raise OptimizerError(
+            f"lower and upper must be vectors of numbers, got {lower!r} and {upper!r}"
+        ) from None
     if low.ndim != 1 or low.size == 0 or low.shape != high.shape:
         raise OptimizerError(
             f"lower and upper must be vectors of one length; lower has shape {low.shape}, upper {high.shape}"
@@ -32,7 +38,10 @@ def checked_starts(x0: npt.ArrayLike | None, lower: Floats, upper: Floats, most:
     """Given first positions as a read-only (k, d) array, k = 0 where there are none."""
     if x0 is None:
         return frozen(np.empty((0, lower.size)))
-    starts = frozen(np.atleast_2d(np.asarray(x0, np.float64)))
+    try:
+        starts = frozen(np.atleast_2d(np.asarray(x0, np.float64)))
+    except (TypeError, ValueError):
+        raise OptimizerError(f"x0 must hold positions of numbers, got {x0!r}") from None
     if starts.ndim != 2 or starts.shape[1] != lower.size:
         raise OptimizerError(f"x0 must have {lower.size} columns like the box; its shape is {starts.shape}")
     if len(starts) > most:
@@ -48,18 +57,21 @@ def checked_starts(x0: npt.ArrayLike | None, lower: Floats, upper: Floats, most:
 
 def checked_at_least(name: str, value: float, least: float) -> None:
     """Raises OptimizerError unless value >= least; NaN never passes."""
+    check_number(name, value, OptimizerError)
     if not value >= least:
         raise OptimizerError(f"{name} must be at least {least}, not {value}")
 
 
 def checked_within(name: str, value: float, least: float, most: float) -> None:
     """Raises OptimizerError unless least <= value <= most; NaN never passes."""
+    check_number(name, value, OptimizerError)
     if not least <= value <= most:
         raise OptimizerError(f"{name} must lie in [{least}, {most}], not {value}")
 
 
 def checked_positive(name: str, value: float) -> None:
     """Raises OptimizerError unless value > 0; NaN never passes."""
+    check_number(name, value, OptimizerError)
     if not value > 0:
         raise OptimizerError(f"{name} must be positive, not {value}")
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats, frozen
+from gpsynth.checks import check_whole
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.box import (
     checked_at_least,
@@ -106,10 +107,10 @@ class CMAES:
     def __post_init__(self) -> None:
         lower, upper = checked_box(self.lower, self.upper)
         size = self.size or 4 + floor(3 * log(lower.size))  # eq. 48
-        checked_at_least("size", size, 4)
+        check_whole("size", size, 4, OptimizerError)
         checked_positive("sigma", self.sigma)
-        checked_at_least("growth", self.growth, 1)
-        checked_at_least("restarts", self.restarts, 0)
+        check_whole("growth", self.growth, 1, OptimizerError)
+        check_whole("restarts", self.restarts, 0, OptimizerError)
         checked_at_least("tolerance", self.tolerance, 0.0)
         if self.x0 is not None and np.ndim(self.x0) != 1:
             raise OptimizerError(f"x0 must be one position ({lower.size},); its shape is {np.shape(self.x0)}")

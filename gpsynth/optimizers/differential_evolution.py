@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_whole
+from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.box import (
-    checked_at_least,
     checked_box,
     checked_starts,
     checked_within,
@@ -51,8 +52,8 @@ class DifferentialEvolution:
 
     def __post_init__(self) -> None:
         lower, upper = checked_box(self.lower, self.upper)
-        checked_at_least("size", self.size, 4)
-        checked_at_least("memory", self.memory, 1)
+        check_whole("size", self.size, 4, OptimizerError)
+        check_whole("memory", self.memory, 1, OptimizerError)
         checked_within("greed", self.greed, 0.0, 1.0)
         object.__setattr__(self, "lower", lower)
         object.__setattr__(self, "upper", upper)

@@ -8,7 +8,8 @@ from typing import Generic, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth.arrays import Floats, check_whole
+from gpsynth.arrays import Floats
+from gpsynth.checks import check_function, check_number, check_whole
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.bar import bar
 from gpsynth.optimizers.protocol import Batch, S, Search
@@ -69,6 +70,10 @@ def minimize(
     smaller than one generation and for costs that do not fit their batch.
     """
     _check(seed, budget, target)
+    check_function("cost", cost, OptimizerError)
+    check_function("callback", callback, OptimizerError, optional=True)
+    if not hasattr(optimizer, "ask"):
+        raise OptimizerError(f"optimizer must be a search such as gpsynth.CMAES(...), got {optimizer!r}")
     now = resume or Progress(0, 0, 0, (), optimizer.init(stream(seed, *path, 0)))
     with bar(budget, progress) as show:
         while not (reason := _reason(optimizer, now, target)):
@@ -97,6 +102,7 @@ def minimize(
 def _check(seed: int, budget: int, target: float) -> None:
     check_whole("seed", seed, 0, OptimizerError)
     check_whole("budget", budget, 1, OptimizerError)
+    check_number("target", target, OptimizerError)
     if isnan(target):
         raise OptimizerError("target must be a number, not NaN")
 
@@ -108,7 +114,12 @@ def _reason(optimizer: Search[S, Batch, Candidate], now: Progress[S], target: fl
 
 
 def _costs(values: npt.ArrayLike, count: int) -> Floats:
-    costs = np.asarray(values, np.float64)
+    try:
+        costs = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        raise OptimizerError(
+            f"cost must return numbers, one row per candidate; it returns {values!r}"
+        ) from None
     if costs.ndim == 0 or len(costs) != count:
         raise OptimizerError(
             f"cost must return one row per candidate: {count} expected, shape {costs.shape} came"

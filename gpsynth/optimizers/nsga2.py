@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 
 from gpsynth.arrays import Floats, Ints
+from gpsynth.checks import check_whole
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.box import (
-    checked_at_least,
     checked_box,
     checked_positive,
     checked_starts,
@@ -52,8 +52,8 @@ class NSGA2:
 
     def __post_init__(self) -> None:
         lower, upper = checked_box(self.lower, self.upper)
-        checked_at_least("objectives", self.objectives, 2)
-        checked_at_least("size", self.size, 4)
+        check_whole("objectives", self.objectives, 2, OptimizerError)
+        check_whole("size", self.size, 4, OptimizerError)
         if self.size % 2:
             raise OptimizerError(f"size must be even, since children come in pairs, not {self.size}")
         checked_within("crossover", self.crossover, 0.0, 1.0)

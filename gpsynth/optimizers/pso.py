@@ -6,6 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_whole
+from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.box import (
     checked_at_least,
     checked_box,
@@ -50,7 +52,7 @@ class PSO:
 
     def __post_init__(self) -> None:
         lower, upper = checked_box(self.lower, self.upper)
-        checked_at_least("size", self.size, 1)
+        check_whole("size", self.size, 1, OptimizerError)
         checked_within("inertia", self.inertia, 0.0, 1.0)
         checked_at_least("cognitive", self.cognitive, 0.0)
         checked_at_least("social", self.social, 0.0)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, check_law
 from gpsynth.law import Law
@@ -178,10 +179,13 @@ def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
 
 
 def _check(problem: Problem, law: Law, settings: PlanSettings, initial: Sequence[Schedule]) -> None:
+    check_kind("problem", problem, Problem)
+    check_kind("settings", settings, PlanSettings)
     if len(problem.starts) != 1:
         raise ProblemError(f"a plan begins at one start; the problem has {len(problem.starts)}")
     check_law(problem, law)
     for schedule in initial:
+        check_kind("an initial schedule", schedule, Schedule)
         if schedule.points.shape != (settings.points, problem.starts.shape[1]):
             raise ProblemError(
                 f"an initial schedule has points of shape {schedule.points.shape}; "

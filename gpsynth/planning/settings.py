@@ -1,8 +1,11 @@
 """How a plan is searched: its free numbers, the weights of its cost, and the swarm."""
 
 from dataclasses import dataclass, replace
-from typing import Literal
+from math import inf
+from typing import Literal, get_args
 
+from gpsynth.arrays import shaped
+from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ProblemError
 
 Clear = Literal["path", "points"]
@@ -30,14 +33,21 @@ class PlanSettings:
 
     def __post_init__(self) -> None:
         for name in ("points", "particles", "iterations", "rounds"):
-            if getattr(self, name) < 1:
+            check_whole(f"{name} of a plan", getattr(self, name), 1)
+        for name in ("alpha", "beta", "gamma", "margin", "spread", "patience", "reach"):
+            value = getattr(self, name)
+            check_number(f"{name} of a plan", value)
+            if not 0.0 <= value < inf:
+                raise ProblemError(f"{name} of a plan must be finite and at least 0, not {value}")
+        for name, choices in (("obstacles", get_args(Clear)), ("optimizer", get_args(Method))):
+            if getattr(self, name) not in choices:
+                raise ProblemError(f"{name} of a plan must be one of {choices}, not {getattr(self, name)!r}")
+        if self.dwell is not None:
+            shortest, longest = shaped("dwell, (shortest, longest) in s,", self.dwell, (2,))
+            if not 0.0 <= shortest < longest:
                 raise ProblemError(
-                    f"{name} of a plan is {getattr(self, name)}; expected a whole number from 1 on"
+                    f"dwell is {self.dwell}; expected two times with 0 <= shortest < longest, or None"
                 )
-        if self.dwell is not None and not 0.0 <= self.dwell[0] < self.dwell[1] < float("inf"):
-            raise ProblemError(
-                f"dwell is {self.dwell}; expected two times with 0 <= shortest < longest, or None"
-            )
 
     @classmethod
     def paper(cls, points: int = 5, *, particles: int = 100, rounds: int = 20) -> "PlanSettings":

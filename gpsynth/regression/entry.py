@@ -4,12 +4,12 @@ import re
 import time
 from collections import Counter
 from collections.abc import Sequence
-from numbers import Real
 
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth.arrays import Floats, check_whole
+from gpsynth.arrays import Floats
+from gpsynth.checks import check_names, check_number, check_whole
 from gpsynth.errors import RegressionError
 from gpsynth.kernels.data_code import NAMES
 from gpsynth.program import NAME
@@ -54,18 +54,21 @@ def regress(
     given = np.ones(len(rows)) if weights is None else _vector("weights", weights)
     if len(given) != len(rows) or np.any(given < 0.0) or not np.any(given > 0.0):
         raise RegressionError(f"expected {len(rows)} weights, none negative and one positive")
-    unknown = [str(name) for name in functions if name not in NAMES]
-    if unknown or not functions:
+    wanted = check_names("functions", functions, RegressionError)
+    unknown = [str(name) for name in wanted if name not in NAMES]
+    if unknown or not wanted:
         raise RegressionError(f"functions are some of {', '.join(NAMES)}; not {', '.join(unknown) or 'none'}")
     check_whole("evaluations", evaluations, 1, RegressionError)
     check_whole("seed", seed, 0, RegressionError)
-    if seconds is not None and not (isinstance(seconds, Real) and seconds > 0.0):
-        raise RegressionError(f"seconds must be a positive number or None, not {seconds!r}")
+    if seconds is not None:
+        check_number("seconds", seconds, RegressionError)
+        if not seconds > 0.0:
+            raise RegressionError(f"seconds must be positive, not {seconds}")
     labels, outputs = _names(names, target_name, rows.shape[1], targets.shape[1])
     begin = time.process_time()
     rows, targets, given = merged(rows, targets, given)
     budget = Budget(int(evaluations), seconds)
-    found = search_each(rows, targets, given, frozenset(functions), budget=budget, seed=seed)
+    found = search_each(rows, targets, given, frozenset(wanted), budget=budget, seed=seed)
     front = joined([each.front for each in found])
     return RegressionResult(
         tuple(_formula(joint, labels, outputs) for joint in front),
@@ -112,7 +115,7 @@ def column_names(names: Sequence[str] | None, count: int) -> tuple[str, ...]:
 def output_names(name: str | Sequence[str], count: int) -> tuple[str, ...]:
     """The names of the targets, those of several being numbered if they are not given."""
     if not isinstance(name, str):
-        return tuple(name)
+        return check_names("target_name", name, RegressionError)
     return (name,) if count == 1 else tuple(f"{name}{k}" for k in range(count))
 
 
@@ -120,12 +123,12 @@ def _names(
     names: Sequence[str] | None, target_name: str | Sequence[str], inputs: int, outputs: int
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """The names of inputs and targets, which must all be different."""
-    labels = column_names(None, inputs) if names is None else tuple(names)
+    labels = column_names(None, inputs) if names is None else check_names("names", names, RegressionError)
     targets = output_names(target_name, outputs)
     for what, given, count in (("columns", labels, inputs), ("targets", targets, outputs)):
         if len(given) != count:
             raise RegressionError(
-                f"there are {len(given)} names for {count} {what}: {', '.join(map(str, given))}"
+                f"expected {count} names of {what}, got {len(given)}: {', '.join(map(str, given))}"
             )
     for name in (*labels, *targets):
         if not isinstance(name, str) or not NAME.match(name):
@@ -160,7 +163,8 @@ def _vector(what: str, values: npt.ArrayLike) -> Floats:
 
 def _numbers(what: str, values: npt.ArrayLike) -> Floats:
     try:
-        numbers = np.asarray(values, dtype=np.float64)
+        numbers = np.asarray(values)
+        numbers = numbers.astype(np.float64, casting="unsafe" if numbers.dtype.kind == "O" else "same_kind")
     except (TypeError, ValueError):
         raise RegressionError(f"{what} must hold numbers in rows of equal length") from None
     if not np.all(np.abs(numbers) < LARGEST):

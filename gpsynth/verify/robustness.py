@@ -11,6 +11,7 @@ import numpy.typing as npt
 from scipy import stats
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind, check_number
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
@@ -102,6 +103,10 @@ def assess(
     found on. Rows that share a draw (`crossed`) show its effect more clearly, but then the bound is too high.
     Raises ProblemError if law and problem do not fit, or a setting makes no sense.
     """
+    check_kind("law", law, Law)
+    check_kind("problem", problem, Problem)
+    check_kind("stress", stress, Stress)
+    check_number("the confidence", confidence)
     if not 0.0 < confidence < 1.0:
         raise ProblemError(f"the confidence must lie between 0 and 1, got {confidence}")
     arrival, held = _rolled(law, problem, threads)

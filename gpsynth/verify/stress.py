@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from gpsynth.arrays import numbers, shaped
+from gpsynth.checks import check_whole
 from gpsynth.draws import Draws, noise_tables
 from gpsynth.errors import ProblemError
 from gpsynth.problem import Problem
@@ -26,10 +28,12 @@ class Stress:
     seed: int = 0  # of the noise
 
     def __post_init__(self) -> None:
-        if not isinstance(self.refine, int) or self.refine < 1:
-            raise ProblemError(f"refine must be an integer of at least 1, got {self.refine!r}")
-        if not all(0.0 < factor < np.inf for factor in self.limits):
+        check_whole("refine", self.refine, 1)
+        check_whole("seed", self.seed, 0)
+        if not np.all(shaped("limits", self.limits, (-1,)) > 0.0):
             raise ProblemError(f"limits are scaled by positive factors, got {self.limits!r}")
+        if self.noise is not None and not np.all(numbers("noise", self.noise) >= 0.0):
+            raise ProblemError(f"noise is a standard deviation of at least 0, got {self.noise!r}")
 
 
 def harder(problem: Problem, stress: Stress) -> Iterator[tuple[str, Problem]]:

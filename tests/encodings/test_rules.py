@@ -79,7 +79,7 @@ def test_a_genome_that_breaks_a_rule_is_refused():
     [
         ({"forbid": {"cos": ("sin",)}}, "a rule is about 'cos', which is not one of sin, add"),
         ({"forbid": {"sin": ("cos",)}}, "a rule is about 'cos'"),
-        ({"forbid": {"sin": "cos"}}, "what may not stand within sin are names in a tuple"),
+        ({"forbid": {"sin": "cos"}}, "what may not stand within sin must be names in a tuple, got 'cos'"),
         ({"limits": {"exp": 1}}, "a rule is about 'exp'"),
         ({"limits": {"sin": -1}}, "the limit of sin must be an integer of at least 0"),
         ({"limits": {"sin": 0, "add": 0}}, "the limits allow none of the operations"),

@@ -135,10 +135,10 @@ def test_a_first_mean_can_be_given():
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"size": 3}, "size must be at least 4, not 3"),
+        ({"size": 3}, "size must be an integer of at least 4, not 3"),
         ({"sigma": 0.0}, "sigma must be positive, not 0.0"),
-        ({"growth": 0}, "growth must be at least 1, not 0"),
-        ({"restarts": -1}, "restarts must be at least 0, not -1"),
+        ({"growth": 0}, "growth must be an integer of at least 1, not 0"),
+        ({"restarts": -1}, "restarts must be an integer of at least 0, not -1"),
         ({"tolerance": np.nan}, "tolerance must be at least 0.0, not nan"),
         ({"x0": np.zeros((2, 5))}, r"x0 must be one position \(5,\); its shape is \(2, 5\)"),
         ({"x0": np.full(5, 9.0)}, "lies outside"),

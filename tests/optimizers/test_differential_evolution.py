@@ -84,8 +84,8 @@ def test_a_collapsed_population_ends_the_run():
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"size": 3}, "size must be at least 4, not 3"),
-        ({"memory": 0}, "memory must be at least 1, not 0"),
+        ({"size": 3}, "size must be an integer of at least 4, not 3"),
+        ({"memory": 0}, "memory must be an integer of at least 1, not 0"),
         ({"greed": 1.5}, "greed must lie in"),
         ({"x0": np.zeros(4)}, "x0 must have 5 columns"),
     ],

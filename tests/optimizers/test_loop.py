@@ -136,8 +136,8 @@ def test_the_loop_searches_structures_as_well():
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"seed": -1, "budget": 100}, "seed must be a whole number from 0 on, not -1"),
-        ({"seed": 1, "budget": 0}, "budget must be at least 1 evaluation, not 0"),
+        ({"seed": -1, "budget": 100}, "seed must be an integer of at least 0, not -1"),
+        ({"seed": 1, "budget": 0}, "budget must be an integer of at least 1, not 0"),
         ({"seed": 1, "budget": 31}, "budget of 31 evaluations is less than one generation of 32"),
         ({"seed": 1, "budget": 100, "target": np.nan}, "target must be a number, not NaN"),
     ],

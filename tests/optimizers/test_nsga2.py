@@ -172,8 +172,8 @@ def test_the_front_is_empty_while_no_cost_was_finite():
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"objectives": 1}, "objectives must be at least 2, not 1"),
-        ({"size": 2}, "size must be at least 4, not 2"),
+        ({"objectives": 1}, "objectives must be an integer of at least 2, not 1"),
+        ({"size": 2}, "size must be an integer of at least 4, not 2"),
         ({"size": 21}, "size must be even, since children come in pairs, not 21"),
         ({"crossover": 2.0}, "crossover must lie in"),
         ({"mutation": -0.1}, "mutation must lie in"),

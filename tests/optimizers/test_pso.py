@@ -123,7 +123,7 @@ def test_rescoring_leaves_positions_alone_and_lets_nan_never_lead():
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
-        ({"size": 0}, "size must be at least 1, not 0"),
+        ({"size": 0}, "size must be an integer of at least 1, not 0"),
         ({"inertia": 1.5}, r"inertia must lie in \[0.0, 1.0\], not 1.5"),
         ({"inertia": np.nan}, "inertia must lie"),
         ({"cognitive": -1.0}, "cognitive must be at least 0.0, not -1.0"),

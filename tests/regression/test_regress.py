@@ -88,9 +88,9 @@ def test_a_constant_target_is_its_value() -> None:
         ({"target": np.full(60, np.nan)}, "finite"),
         ({"functions": ("add", "gamma")}, "not gamma"),
         ({"weights": -np.ones(60)}, "60 weights"),
-        ({"names": ("a", "b")}, "2 names for 3 columns"),
+        ({"names": ("a", "b")}, "expected 3 names of columns, got 2: a, b"),
         ({"names": ("a", "b", "__import__('os')")}, r"\"__import__\('os'\)\" is not a name"),
-        ({"evaluations": 0}, "evaluations must be a whole number from 1 on, not 0"),
+        ({"evaluations": 0}, "evaluations must be an integer of at least 1, not 0"),
     ],
 )
 def test_what_does_not_fit_is_one_sentence(settings, message) -> None:
@@ -115,5 +115,5 @@ def test_data_that_say_little_give_a_formula_all_the_same(inputs, target):
 
 
 def test_a_seed_that_is_none_is_named():
-    with pytest.raises(RegressionError, match="whole number from 0 on, not -1"):
+    with pytest.raises(RegressionError, match="an integer of at least 0, not -1"):
         gpsynth.regress(np.ones((3, 1)), np.ones(3), seed=-1)

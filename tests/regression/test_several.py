@@ -110,7 +110,7 @@ def test_what_a_formula_shares_with_one_before_is_one_node():
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"target_name": ("a", "b", "c")}, "3 names for 2 targets: a, b, c"),
+        ({"target_name": ("a", "b", "c")}, "expected 2 names of targets, got 3: a, b, c"),
         ({"target_name": ("a", "a")}, "different names; a is there twice"),
         ({"target_name": ("a", "x0")}, "different names; x0 is there twice"),
         ({"target": ENZYME[:, :, None]}, r"shape \(60, 2, 1\); expected \(n,\) or \(n, k\)"),

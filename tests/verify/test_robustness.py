@@ -138,7 +138,7 @@ def test_the_table_is_aligned_and_says_what_it_counts():
 
 
 WRONG = {
-    "refine": (lambda: Stress(refine=0), "refine must be an integer of at least 1, got 0"),
+    "refine": (lambda: Stress(refine=0), "refine must be an integer of at least 1, not 0"),
     "limits": (lambda: Stress(limits=(0.8, -1.0)), "limits are scaled by positive factors"),
     "confidence": (
         lambda: assess(TOWARDS, problem(), confidence=1.0),
