@@ -4,6 +4,8 @@ The text is parsed by Python's own grammar and walked node by node; nothing in i
 """
 
 import ast
+import functools
+import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
@@ -23,20 +25,23 @@ _OPERATORS: Mapping[type[ast.AST], Callable[..., Any]] = MappingProxyType(
         **{ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv},
         **{ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos},
         **{ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge},
-        **{ast.Eq: operator.eq, ast.NotEq: operator.ne},
+        **{ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.BitAnd: operator.and_, ast.BitOr: operator.or_},
         ast.Not: lambda a: a.apply("not"),
     }
 )
+_SYMPY = MappingProxyType({"Abs": "abs", "Eq": "eq", "Max": "max", "Min": "min"})  # what it prints otherwise
 
 
 def read_formulas(text: str, inputs: Sequence[str], outputs: Sequence[str]) -> Program:
     """The program of `name = formula` lines, one for each output, intermediate values before their use.
 
     A single output may stand without its name. Formulas have numbers, the inputs, + - * / ^, comparisons,
-    `a if c else b`, and the functions of the table of operations and of numpy, by name. Raises FormulaError.
+    `a if c else b`, pi, and the functions of the table of operations and of numpy, by name; what sympy prints is read
+    as well, Piecewise included. Raises FormulaError.
     """
     builder = Builder(tuple(inputs))
     known = {name: Symbol(builder, each) for name, each in zip(inputs, builder.inputs, strict=True)}
+    known.setdefault("pi", Symbol(builder, builder.constant(math.pi)))
     for statement in _statements(text):
         if isinstance(statement, ast.Assign) and isinstance(statement.targets[0], ast.Name):
             name = statement.targets[0].id
@@ -83,12 +88,32 @@ def _value(node: ast.expr, known: Mapping[str, Symbol], builder: Builder) -> Any
             return _OPERATORS[type(sign)](*inner(operand))
         case ast.IfExp(condition, chosen, otherwise):
             return elementwise("where", *inner(condition, chosen, otherwise))
+        case ast.Call(ast.Name("Piecewise"), [*pieces], []):
+            return _piecewise(pieces, inner)
         case ast.Call(ast.Name(name) | ast.Attribute(ast.Name("np" | "numpy"), name), operands, []):
             return _called(name, inner(*operands))
     raise FormulaError(f"{ast.unparse(node)!r} is nothing that a formula can hold")
 
 
+def _piecewise(pieces: Sequence[ast.expr], inner: Callable[..., list[Any]]) -> Any:
+    """The value of the first pair (value, condition) whose condition holds; the last one's is True."""
+    match pieces:
+        case [*first, ast.Tuple([last, ast.Constant(value=True)])]:
+            (result,) = inner(last)
+        case _:
+            raise FormulaError("the last pair of Piecewise must be (value, True)")
+    for piece in reversed(first):
+        if not isinstance(piece, ast.Tuple) or len(piece.elts) != 2:
+            raise FormulaError(f"Piecewise takes pairs (value, condition), got {ast.unparse(piece)!r}")
+        value, condition = inner(*piece.elts)
+        result = elementwise("where", condition, value, result)
+    return result
+
+
 def _called(name: str, operands: list[Any]) -> Any:
+    name = _SYMPY.get(name, name)
+    if name in ("max", "min") and len(operands) > 2:
+        return functools.reduce(lambda a, b: a.apply(name, b), operands)
     if name in CODES and len(operands) == operation(name).arity:
         return operands[0].apply(name, *operands[1:])
     if name in FUNCTIONS:

@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
+import sympy
 
 from gpsynth.builder import bind
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.errors import FormulaError
+from gpsynth.export import to_sympy
 from gpsynth.formula import lines
 from gpsynth.formula_text import read_formulas
 from gpsynth.operations import GP_NAMES
@@ -49,14 +51,32 @@ def test_what_is_printed_can_be_read_again():
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "abs(x) - 0.25 * max(x, y) + min(y, 0.5)",
+        "max(x, max(y, 1.5)) * pi",
+        "tanh(2.5 * x) + y^2 / (1 + x^2) - sqrt(abs(x)) * exp(y)",
+        "sign(x) * atan2(y, x) + cos(x)^3",
+    ],
+)
+def test_what_sympy_has_rewritten_can_be_read_again(text):
+    program = read_formulas(text, ("x", "y"), ("u",))
+    (expression,) = to_sympy(program, expanded=True).expressions
+    again = read_formulas(str(sympy.expand(sympy.simplify(expression))), ("x", "y"), ("u",))
+    assert again(ROWS) == pytest.approx(program(ROWS), rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(
     ("text", "sentence"),
     [
         ("", "the text is empty"),
         ("2 x", "the text is not a formula: invalid syntax"),
-        ("u = z + 1", "there is no 'z'; known are x, y"),
+        ("u = z + 1", "there is no 'z'; known are x, y, pi"),
         ("v = x", r"the text has no line u = \.\.\."),
         ("import os", "expected lines like u = ..., got 'import os'"),
         ("u = __import__('os')", r"'os'.* is nothing that a formula can hold"),
+        ("Piecewise((x, x < 0))", r"the last pair of Piecewise must be \(value, True\)"),
+        ("Piecewise(x, (y, True))", r"Piecewise takes pairs \(value, condition\), got 'x'"),
         ("u = x.y", "'x.y' is nothing that a formula can hold"),
         ("u = foo(x)", "there is no function 'foo'"),
         ("u = sin(x, y)", "sin does not take 2 operands|sin takes 1 operands"),

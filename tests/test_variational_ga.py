@@ -144,9 +144,9 @@ def test_same_seed_same_search():
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"population": 1}, "population must be at least 2, not 1"),
-        ({"couples": 0}, "couples must be at least 1"),
-        ({"epoch": -1}, "epoch must be at least 0"),
+        ({"population": 1}, "population must be an integer of at least 2, not 1"),
+        ({"couples": 0}, "couples must be an integer of at least 1"),
+        ({"epoch": -1}, "epoch must be an integer of at least 0"),
         ({"attraction": 1.5}, r"attraction must lie in \[0, 1\]"),
         ({"mutation": float("nan")}, r"mutation must lie in \[0, 1\]"),
     ],

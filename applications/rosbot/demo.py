@@ -9,6 +9,7 @@ from applications.rosbot.show import SavedPlan, print_plans, read_plan
 from applications.rosbot.stages import run_plan, run_synthesis
 from gpsynth.cli import begin
 from gpsynth.planning import PlanSettings
+from gpsynth.runs import FILE
 
 SCENARIOS = Path(__file__).with_name("scenarios")
 JOBS = (("paper.json", "plan.json"), ("paper_empty.json", "plan_empty.json"))  # figures 3 and 4 of the paper
@@ -25,7 +26,8 @@ SHORT_EFFORT = Effort(
 def run_demo(out: Path, *, seed: int, short: bool, resume: bool, threads: int) -> list[SavedPlan]:
     """Synthesize a stabilizer, plan both scenarios with it, draw and print; the plans, as they are in the folder.
 
-    With `resume` the synthesis goes on from its checkpoint in the folder; the plans are made anew.
+    With `resume` the synthesis goes on from its checkpoint in the folder; the plans are made anew. The checkpoint goes
+    when all is done, so that the demo can be run again.
     """
     run = begin(out, seed, resume=resume)
     click.echo("stage 1: synthesis of the stabilizer")
@@ -49,5 +51,6 @@ def run_demo(out: Path, *, seed: int, short: bool, resume: bool, threads: int) -
         )
         plans.append((scenario_name.removesuffix(".json"), read_plan(path)))
     print_plans(plans)
+    (run.folder / FILE).unlink(missing_ok=True)
     click.echo(f"everything is in {out}")
     return [plan for _, plan in plans]

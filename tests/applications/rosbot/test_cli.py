@@ -286,6 +286,7 @@ def test_the_demo_leaves_a_whole_run_folder(capsys, tmp_path):
     assert names >= {"law.json", "law.tex", "law.c", "law.h", "plan.json", "plan.png", "progress.jsonl"}
     assert names >= {"plan_empty.json", "plan_empty.png", "scenario.json", "scenario_empty.json", "run.json"}
     assert not any(name.startswith(".") for name in names)
+    assert "checkpoint.json" not in names  # it can be run again
     text = capsys.readouterr().out
     assert Law.load(tmp_path / "law.json").formulas()[-1] in text
     for suffix in ("", "_empty"):
