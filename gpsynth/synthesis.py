@@ -101,6 +101,13 @@ class SynthesisResult:
         names = ("complexity", "cost", "reached", "reached_at_least", *times, "formulas")
         write_csv(path, names, self.rows())
 
+    def latex_table(self) -> str:
+        """The front as a LaTeX tabular: size, cost, share reached, formulas (`gpsynth.export.latex_table`)."""
+        from gpsynth.export import latex_table
+
+        numbers = [(entry.complexity, entry.cost, entry.reached) for entry in self.front]
+        return latex_table(("size", "cost", "reached"), numbers, [entry.law.bounded for entry in self.front])
+
     def plot(self, *, ax: "Axes | None" = None) -> "Axes":
         """Cost over complexity (`gpsynth.plotting.plot_front`)."""
         return plot_front(self.front, ax=ax)

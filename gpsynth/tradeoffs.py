@@ -73,6 +73,15 @@ class Tradeoffs:
             lines.append(head + ("\n" + " " * len(head)).join(entry.law.formulas()))
         return "\n".join(lines)
 
+    def latex_table(self) -> str:
+        """The front as a LaTeX tabular: costs, size, formulas (`gpsynth.export.latex_table`)."""
+        from gpsynth.export import latex_table
+
+        numbers = [
+            [*(entry.costs[name] for name in self.objectives), entry.complexity] for entry in self.front
+        ]
+        return latex_table((*self.objectives, "size"), numbers, [entry.law.bounded for entry in self.front])
+
     def plot(self, *, ax: "Axes | None" = None) -> "Axes":
         """The second cost over the first (`gpsynth.plotting.plot_tradeoff`)."""
         first, second = self.objectives[:2]

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from gpsynth.export.control_form import to_control
     from gpsynth.export.folder import write
     from gpsynth.export.formula import to_text
+    from gpsynth.export.fronts import latex_table
     from gpsynth.export.latex import to_document, to_latex
     from gpsynth.export.programs import program_to_c, program_to_latex, program_to_python
     from gpsynth.export.python_form import to_python
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SympyForm",
+    "latex_table",
     "program_to_c",
     "program_to_latex",
     "program_to_python",
@@ -34,6 +36,7 @@ __all__ = [
 _MODULES = MappingProxyType(
     {
         "SympyForm": "sympy_form",
+        "latex_table": "fronts",
         "program_to_c": "programs",
         "program_to_latex": "programs",
         "program_to_python": "programs",

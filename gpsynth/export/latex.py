@@ -125,7 +125,7 @@ def notation(names: dict[str, str]) -> Notation[Piece]:
         return Piece(text, Level.POWER if "^" in text or text.startswith("\\Delta ") else Level.ATOM)
 
     def leaf(item: Leaf) -> Piece:
-        return _number(item.value) if item.kind == "constant" else named(item.name)
+        return number(item.value) if item.kind == "constant" else named(item.name)
 
     return Notation(leaf=leaf, node=_node, symbol=named, copies=_copies)
 
@@ -134,7 +134,8 @@ def _copies(operation: Operation) -> tuple[int, ...]:
     return tuple(operation.latex.count(f"{{{index}}}") for index in range(operation.arity))
 
 
-def _number(value: float) -> Piece:
+def number(value: float) -> Piece:
+    """A number with six digits, powers of ten written out."""
     text = number_text(value)
     mantissa, _, exponent = text.partition("e")
     if exponent:

@@ -75,10 +75,15 @@ def program_to_python(program: Program, name: str = "formula") -> str:
 def program_to_latex(program: Program) -> str:
     """The program as an align* environment (it needs amsmath), one line for each intermediate value and output."""
     check_kind("program", program, Program, error=ProgramError)
+    lines = " \\\\\n".join(f"  {left} &= {right}" for left, right in latex_lines(program))
+    return f"\\begin{{align*}}\n{lines}\n\\end{{align*}}\n"
+
+
+def latex_lines(program: Program) -> list[tuple[str, str]]:
+    """Both sides of the equation of each intermediate value and output."""
     names = symbols((*program.inputs, *program.parameters, *program.names))
     rows = spell(program, notation(names), fresh_names("z", program), largest=10)
-    lines = " \\\\\n".join(f"  {names.get(left, symbol(left))} &= {right.text}" for left, right in rows)
-    return f"\\begin{{align*}}\n{lines}\n\\end{{align*}}\n"
+    return [(names.get(left, symbol(left)), right.text) for left, right in rows]
 
 
 def _listing(program: Program, syntax: Syntax) -> Listing:

@@ -112,6 +112,15 @@ class RegressionResult:
         rows = self.rows()
         write_csv(path, tuple(rows[0]), rows)
 
+    def latex_table(self) -> str:
+        """The front as a LaTeX tabular: size, errors, formulas (`gpsynth.export.latex_table`)."""
+        from gpsynth.export import latex_table
+
+        names = self.program.names
+        heads = ("size", *(f"error_{name}" for name in names)) if len(names) > 1 else ("size", "error")
+        numbers = [(item.size, *item.errors) for item in self.front]
+        return latex_table(heads, numbers, [item.program for item in self.front])
+
     def plot(self, *, ax: "Axes | None" = None) -> "Axes":
         """Error over size, a line for each target (`gpsynth.plotting.plot_errors`)."""
         errors = np.array([item.errors for item in self.front])
