@@ -1,5 +1,6 @@
 """What a public function checks of its arguments before anything else: kinds and plain numbers, one sentence each."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -39,8 +40,8 @@ def check_function(
 
 
 def check_names(name: str, value: Any, error: type[GpsynthError] = ProblemError) -> tuple[Any, ...]:
-    """The items of a tuple or list of names; raises the error if it is something else, one text among others."""
-    if not isinstance(value, tuple | list | np.ndarray):
+    """The items of a tuple or other row of names; raises the error if it is none, one text among others."""
+    if isinstance(value, str) or not isinstance(value, Iterable):
         raise error(f"{name} must be names in a tuple, got {value!r}")
     return tuple(value)
 

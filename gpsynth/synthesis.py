@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -166,18 +166,10 @@ def synthesize(
     check_encoding(problem, encoding)
     check_search(seed, budget, threads, callback)
     check_whole("tuning", tuning, 0)
-    check_kind("islands", islands, Islands, optional=True)
-    check_kind("search", search, StructureSearch, Epochs, VariationalGA, optional=True)
-    check_kind("trials", trials, list, tuple)
-    for name, other in (("rough", rough), ("tuned", tuned), *(("a trial", each) for each in trials)):
-        check_kind(name, other, Problem, optional=name != "a trial")
+    _check_parts(search, islands, rough, tuned, trials)
     shape = None if islands is None else (islands, budget)  # shares depend on the budget
     wanted = as_objective(objective)
     strategy: Any = search or StructureSearch(encoding)
-    if islands is not None and not isinstance(strategy, StructureSearch):
-        raise OptimizerError(
-            f"islands merge, which a {type(strategy).__name__} cannot; use a StructureSearch, or no islands"
-        )
     strategy = replace(strategy, seeds=(*strategy.seeds, *genomes_of(guesses, encoding)))
     parts = {
         "problem": problem,
@@ -233,6 +225,20 @@ def check_search(seed: int, budget: int, threads: int, callback: object) -> None
     check_whole("budget", budget, 1)
     check_whole("threads", threads, 1)
     check_function("callback", callback, optional=True)
+
+
+def _check_parts(search: object, islands: object, rough: object, tuned: object, trials: object) -> None:
+    check_kind("search", search, StructureSearch, Epochs, VariationalGA, optional=True)
+    check_kind("islands", islands, Islands, optional=True)
+    if islands is not None and not isinstance(search, StructureSearch | None):
+        raise OptimizerError(
+            f"islands merge, which a {type(search).__name__} cannot; use a StructureSearch, or no islands"
+        )
+    check_kind("rough", rough, Problem, optional=True)
+    check_kind("tuned", tuned, Problem, optional=True)
+    check_kind("trials", trials, list, tuple)
+    for trial in cast(Sequence[object], trials):
+        check_kind("a trial", trial, Problem)
 
 
 @dataclass(frozen=True, eq=False)

@@ -54,21 +54,13 @@ def regress(
     given = np.ones(len(rows)) if weights is None else _vector("weights", weights)
     if len(given) != len(rows) or np.any(given < 0.0) or not np.any(given > 0.0):
         raise RegressionError(f"expected {len(rows)} weights, none negative and one positive")
-    wanted = check_names("functions", functions, RegressionError)
-    unknown = [str(name) for name in wanted if name not in NAMES]
-    if unknown or not wanted:
-        raise RegressionError(f"functions are some of {', '.join(NAMES)}; not {', '.join(unknown) or 'none'}")
-    check_whole("evaluations", evaluations, 1, RegressionError)
+    wanted = _functions(functions)
+    budget = _budget(evaluations, seconds)
     check_whole("seed", seed, 0, RegressionError)
-    if seconds is not None:
-        check_number("seconds", seconds, RegressionError)
-        if not seconds > 0.0:
-            raise RegressionError(f"seconds must be positive, not {seconds}")
     labels, outputs = _names(names, target_name, rows.shape[1], targets.shape[1])
     begin = time.process_time()
     rows, targets, given = merged(rows, targets, given)
-    budget = Budget(int(evaluations), seconds)
-    found = search_each(rows, targets, given, frozenset(wanted), budget=budget, seed=seed)
+    found = search_each(rows, targets, given, wanted, budget=budget, seed=seed)
     front = joined([each.front for each in found])
     return RegressionResult(
         tuple(_formula(joint, labels, outputs) for joint in front),
@@ -137,6 +129,23 @@ def _names(
     if twice:
         raise RegressionError(f"columns and targets need different names; {', '.join(twice)} is there twice")
     return labels, targets
+
+
+def _functions(functions: Sequence[str]) -> frozenset[str]:
+    wanted = check_names("functions", functions, RegressionError)
+    unknown = [str(name) for name in wanted if name not in NAMES]
+    if unknown or not wanted:
+        raise RegressionError(f"functions are some of {', '.join(NAMES)}; not {', '.join(unknown) or 'none'}")
+    return frozenset(wanted)
+
+
+def _budget(evaluations: int, seconds: float | None) -> Budget:
+    check_whole("evaluations", evaluations, 1, RegressionError)
+    if seconds is not None:
+        check_number("seconds", seconds, RegressionError)
+        if not seconds > 0.0:
+            raise RegressionError(f"seconds must be positive, not {seconds}")
+    return Budget(int(evaluations), seconds)
 
 
 def _matrix(values: npt.ArrayLike) -> Floats:
