@@ -83,5 +83,5 @@ def test_an_encoding_without_a_basis_is_refused():
     search = StructureSearch(CartesianEncoding(("a", "b"), ("y",), ("add",)))
     with pytest.raises(OptimizerError, match="CartesianEncoding has none"):
         Epochs(search)
-    with pytest.raises(OptimizerError, match="every must be at least 1 generation, not 0"):
+    with pytest.raises(OptimizerError, match="every must be an integer of at least 1, not 0"):
         epochs(NETWORK, every=0)

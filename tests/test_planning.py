@@ -230,7 +230,7 @@ def test_what_does_not_fit_is_said(setting):
         plan(Problem(problem.plant, np.zeros((2, 2)), [4.0, 0.0], tolerance=[0.1, 0.1]), law, SMALL)
     with pytest.raises(ProblemError, match=r"adapt the law by law.with_limits"):
         plan(problem, law.with_limits([-2.0, -2.0], [2.0, 2.0]), SMALL)
-    with pytest.raises(ProblemError, match="rounds of a plan is 0"):
+    with pytest.raises(ProblemError, match="rounds of a plan must be an integer of at least 1, not 0"):
         PlanSettings(rounds=0)
     with pytest.raises(ProblemError, match="dwell is"):
         PlanSettings(dwell=(2.0, 1.0))

@@ -38,9 +38,10 @@ def regress(
 ) -> RegressionResult:
     """Formulas for target (n,) or targets (n, k) from inputs (n, m), a front of size and error.
 
-    The search ends when a formula is exact up to rounding and none smaller turns up, or after `evaluations` formulas
-    have been scored on rows of data; the same seed gives the same result then. `seconds` of processor time end it
-    earlier, and how far it comes is no longer the same on every machine. Weights (n,) are not negative.
+    The search ends when a formula is exact up to rounding and none smaller turns up, or with the step in which
+    `evaluations` formulas have been scored on rows of data; the same seed gives the same result then. `seconds` of
+    processor time end it earlier, and how far it comes is no longer the same on every machine. Weights (n,) are not
+    negative.
 
     Several targets are searched one after the other, each with an equal share of the budget, what those before it have
     left, and parts of their formulas as columns (`gpsynth/regression/several.py:search_each`). Their fronts become one

@@ -44,7 +44,7 @@ def search_each(
     found: list[Found] = []
     chosen: list[Expression] = []
     for y in targets.T:
-        share = _share(budget, Budget(spent, time.process_time() - begin), count, count - len(found))
+        share = share_of(budget, Budget(spent, time.process_time() - begin), count, count - len(found))
         parts = _parts(chosen, rows)
         columns = np.column_stack((rows, *evaluate(parts, rows))) if parts else rows
         library = min(LARGEST_LIBRARY, max(SMALLEST_LIBRARY, share.evaluations // 500))
@@ -59,7 +59,7 @@ def search_each(
     return found
 
 
-def _share(whole: Budget, spent: Budget, count: int, left: int) -> Budget:
+def share_of(whole: Budget, spent: Budget, count: int, left: int) -> Budget:
     """Of one target; the last step of the one before may have taken more than was due to it."""
     evaluations = max(whole.evaluations // count, (whole.evaluations - spent.evaluations) // left)
     if whole.seconds is None or spent.seconds is None:

@@ -9,6 +9,8 @@ import pytest
 import gpsynth
 from gpsynth.regression.front import Candidate
 from gpsynth.regression.joint import Joint, joined
+from gpsynth.regression.search import Budget
+from gpsynth.regression.several import share_of
 
 RNG = np.random.default_rng(4)
 ROWS = RNG.uniform(0.1, 3.0, (60, 2))
@@ -98,6 +100,12 @@ def test_a_joined_front_is_what_no_combination_beats():
     assert {(joint.size, round(joint.loss, 9)) for joint in found} == {
         (size, round(math.log(error), 9)) for size, error in best
     }
+
+
+def test_a_target_has_its_share_and_what_others_have_left_and_no_less_if_they_took_more():
+    assert share_of(Budget(100), Budget(0), 4, 4) == Budget(25)
+    assert share_of(Budget(100), Budget(10), 4, 3) == Budget(30)
+    assert share_of(Budget(100, 8.0), Budget(90, 7.0), 4, 1) == Budget(25, 2.0)
 
 
 def test_what_a_formula_shares_with_one_before_is_one_node():
