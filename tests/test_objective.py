@@ -80,5 +80,5 @@ def test_a_wrong_objective_is_one_sentence(function, sentence):
 
 
 def test_what_is_no_function_is_refused():
-    with pytest.raises(ProblemError, match="an objective is a function of rollouts, got 3"):
+    with pytest.raises(ProblemError, match="an objective must be a function, got 3"):
         as_objective(3)
