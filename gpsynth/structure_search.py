@@ -1,8 +1,8 @@
 """Structure and numbers searched together: variation changes formulas, CMA-ES tunes the numbers of the best ones.
 
-A generation holds new formulas, each under a few parameter vectors, and the next samples of a CMA-ES that belongs to
-each of the best formulas found so far. Both compete by the same costs in the same batch, so the budget goes where
-improvement is: a formula stays tuned only while it stays among the best.
+A generation holds new formulas and the next samples of a CMA-ES that belongs to each of the best formulas found so
+far. Both compete by the same costs in the same batch, so the budget goes where improvement is: a formula stays tuned
+only while it stays among the best.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -67,9 +67,7 @@ class SearchState(Generic[G]):
     tuned: tuple[
         tuple[Individual[G], CMAESState, int], ...
     ] = ()  # individual, waiting tuner, number of samples
-    groups: tuple[
-        tuple[int, int], ...
-    ] = ()  # of each new formula: number of vectors, generation of its ancestor
+    born: tuple[int, ...] = ()  # of each new formula: generation of its oldest ancestor
     generation: int = 0
 
     def bound(self, born: int) -> float:
@@ -94,7 +92,6 @@ class StructureSearch(Generic[G]):
     encoding: Encoding[G]
     population: int = 200
     offspring: int = 200  # new formulas in a generation
-    vectors: int = 1  # parameter vectors a new formula is tried with
     tuned: int = 4  # formulas under CMA-ES
     tournament: int = 4
     simple: float = 0.1  # probability that a parent is one of the front
@@ -106,7 +103,7 @@ class StructureSearch(Generic[G]):
     seeds: tuple[G, ...] = ()  # formulas to begin with
 
     def __post_init__(self) -> None:
-        for name in ("population", "offspring", "vectors", "tournament", "patience"):
+        for name in ("population", "offspring", "tournament", "patience"):
             if getattr(self, name) < 1:
                 raise OptimizerError(f"{name} must be at least 1, not {getattr(self, name)}")
 
@@ -117,23 +114,22 @@ class StructureSearch(Generic[G]):
     def ask(
         self, state: SearchState[G], rng: np.random.Generator
     ) -> tuple[tuple[Candidate[G], ...], SearchState[G]]:
-        """New formulas under `vectors` parameter vectors each, and the samples of the tuners."""
-        batch: list[Candidate[G]] = []
-        groups, tuned = [], []
+        """New formulas, and the samples of the tuners."""
+        tuned = []
         new = self._new(state, rng)
         full = len(state.population) == self.population
         bounds = {born: state.bound(born) if full else inf for born in {born for *_, born in new}}
-        for genome, program, born in new:
-            vectors = self._vectors(genome, program, rng)
-            batch += [Candidate(genome, program, values, bounds[born]) for values in vectors]
-            groups.append((len(vectors), born))
+        batch = [
+            Candidate(genome, program, self.encoding.parameters(genome), bounds[born])
+            for genome, program, born in new
+        ]
         for individual in self._to_tune(state):
             tuner = self._tuner(individual)
             begun = tuner.init(rng) if individual.tuner is None else individual.tuner
             samples, waiting = tuner.ask(begun, rng)
             batch += [Candidate(individual.genome, individual.program, values) for values in samples]
             tuned.append((individual, waiting, len(samples)))
-        return tuple(batch), replace(state, groups=tuple(groups), tuned=tuple(tuned))
+        return tuple(batch), replace(state, born=tuple(born for *_, born in new), tuned=tuple(tuned))
 
     def tell(
         self, state: SearchState[G], candidates: Sequence[Candidate[G]], costs: Floats
@@ -141,15 +137,11 @@ class StructureSearch(Generic[G]):
         """The best of old and new formulas, no two with the same cost; numbers of tuned ones improved."""
         known = {individual.program: individual for individual in state.population}
         means = np.where(np.isfinite(costs).all(axis=1), costs.mean(axis=1), inf)
-        first = 0
-        for count, born in state.groups:
-            best = first + int(np.argmin(means[first : first + count]))
-            if np.isfinite(means[best]):
-                chosen = candidates[best]
-                known[chosen.program] = Individual(
-                    chosen.genome, chosen.program, chosen.values, costs[best], born
-                )
-            first += count
+        for k, born in enumerate(state.born):
+            new = candidates[k]
+            if np.isfinite(means[k]):
+                known[new.program] = Individual(new.genome, new.program, new.values, costs[k], born)
+        first = len(state.born)
         for individual, waiting, count in state.tuned:
             asked = slice(first, first + count)
             improved = self._tuned(individual, waiting, candidates[asked], means[asked], costs[asked])
@@ -218,16 +210,6 @@ class StructureSearch(Generic[G]):
         if draw < self.simple + self.lexicase and len(state.population[0].cases) > 1:
             return state.population[state.specialists.draw(rng)]
         return state.population[int(rng.integers(len(state.population), size=self.tournament).min())]
-
-    def _vectors(self, genome: G, program: Program, rng: np.random.Generator) -> list[Floats]:
-        values = self.encoding.parameters(genome)
-        if not _uses_parameters(program):
-            return [values]
-        space = self.encoding.space
-        factors = np.exp(rng.normal(0.0, 0.7, (self.vectors - 1, len(values))))
-        flips = np.where(rng.random(factors.shape) < 0.1, -1.0, 1.0)
-        moved = np.clip(values * factors * flips, space.lower, space.upper)
-        return [values, *moved]
 
     def _to_tune(self, state: SearchState[G]) -> list[Individual[G]]:
         """The best formulas with numbers that still improve, small ones of the front among them."""
