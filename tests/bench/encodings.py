@@ -1,29 +1,30 @@
-"""`python -m tests.bench.encodings`: every encoding on three problems at equal budgets, with what chance explains.
+"""`python -m tests.bench.encodings`: every encoding on five problems at equal budgets, with what chance explains.
 
 The same search, starts, functions and numbers for all; matrices use the functions with their published guards. A cell
 is the median over the seeds of the cost found, and in brackets the probability of a difference like that from the best
 median of its column if there were none (Mann-Whitney U, two-sided, corrected by Holm over the column). An evaluation is
-one candidate rolled out from all starts.
+one candidate rolled out from all starts, or computed for all rows of a regression.
 """
 
 import argparse
 import sys
 from collections.abc import Callable
-from statistics import median
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from scipy.stats import mannwhitneyu
 
 import gpsynth as gs
 from applications.rosbot.stabilizer import poses, stabilization
-from examples import landau_oscillator
+from examples import cart_pole, landau_oscillator
 from gpsynth.encodings.columns import basic_columns
 from gpsynth.encodings.complete_tree import basic_tree
 from gpsynth.encodings.layers import basic_layers
+from gpsynth.structure_search import Candidate, Cost
 from gpsynth.synthesis import BatchCost
 from tests.bench import robot_a
+from tests.bench.chance import chances
+from tests.bench.problems import HELD_OUT
 
 PLAIN = ("add", "mul", "max", "min", "neg", "square", "signed_sqrt", "tanh", "sin", "cos", "atan")
 NETWORK = (
@@ -75,38 +76,45 @@ SEARCHES: MappingProxyType[str, Callable[[Names], Any]] = MappingProxyType(
         "columns": _varied(basic_columns, PLAIN),
     }
 )
-PROBLEMS: MappingProxyType[str, Callable[[], gs.Problem]] = MappingProxyType(
+
+
+def _loop(problem: gs.Problem) -> tuple[Names, Cost]:
+    return (problem.features.names, problem.plant.control_names), BatchCost(problem)
+
+
+def _regression(name: str) -> tuple[Names, Cost]:
+    """Squared errors, row by row."""
+    rows, wanted, *_ = next(case for case in HELD_OUT if case.name == name).data(seed=1)
+
+    def errors(batch: tuple[Candidate[Any], ...]) -> np.ndarray:
+        with np.errstate(all="ignore"):
+            values = [each.program(rows, each.values)[:, 0] for each in batch]
+            return (np.array(values) - wanted) ** 2
+
+    return (tuple(f"x{k}" for k in range(rows.shape[1])), ("y",)), errors
+
+
+PROBLEMS: MappingProxyType[str, Callable[[], tuple[Names, Cost]]] = MappingProxyType(
     {
-        "ROSbot": lambda: stabilization(
-            poses(gs.stream(1, 7), 16), period=0.1, horizon=20.0, method="heun", stop=False
+        "ROSbot": lambda: _loop(
+            stabilization(poses(gs.stream(1, 7), 16), period=0.1, horizon=20.0, method="heun", stop=False)
         ),
-        "robot A": lambda: robot_a.problem(0.01),
-        "Landau": lambda: landau_oscillator.oscillation(period=0.1, horizon=15.0),
+        "robot A": lambda: _loop(robot_a.problem(0.01)),
+        "Landau": lambda: _loop(landau_oscillator.oscillation(period=0.1, horizon=15.0)),
+        "cart-pole": lambda: _loop(cart_pole.transfer(period=0.02, horizon=5.0)),
+        "Jin-1": lambda: _regression("Jin-1"),
     }
 )
 
 
-def costs(problem: gs.Problem, search: Callable[[Names], Any], seeds: int, budget: int) -> list[float]:
+def costs(
+    problem: tuple[Names, Cost], search: Callable[[Names], Any], seeds: int, budget: int
+) -> list[float]:
     """The cost that each seed finds."""
-    names = problem.features.names, tuple(problem.plant.control_names)
-    cost = BatchCost(problem)
+    names, cost = problem
     found = [gs.minimize(cost, search(names), seed=seed, budget=budget).cost for seed in range(1, seeds + 1)]
-    print(problem.plant.name, np.round(sorted(found), 3).tolist(), file=sys.stderr, flush=True)
+    print(np.round(sorted(found), 3).tolist(), file=sys.stderr, flush=True)
     return found
-
-
-def chances(found: dict[str, list[float]], reference: str | None = None) -> dict[str, float]:
-    """How likely so large a difference is by chance, corrected for their number (Holm 1979).
-
-    From the runs called `reference`, or from those of the best median.
-    """
-    best = reference or min(found, key=lambda name: median(found[name]))
-    raw = {name: mannwhitneyu(found[best], runs).pvalue for name, runs in found.items() if name != best}
-    corrected, least = {best: 1.0}, 0.0
-    for rank, name in enumerate(sorted(raw, key=raw.__getitem__)):
-        least = max(least, min(1.0, (len(raw) - rank) * float(raw[name])))
-        corrected[name] = least
-    return corrected
 
 
 def main() -> None:
@@ -116,8 +124,7 @@ def main() -> None:
     parser.add_argument("--budget", type=int, default=1_500)
     arguments = parser.parse_args()
     cells: dict[str, list[str]] = {name: [] for name in SEARCHES}
-    for make in PROBLEMS.values():
-        problem = make()
+    for problem in (make() for make in PROBLEMS.values()):
         found = {
             name: costs(problem, search, arguments.seeds, arguments.budget)
             for name, search in SEARCHES.items()
