@@ -90,7 +90,7 @@ def table(found: Found) -> Iterator[str]:
         cells = [f"{median(theirs):.3f} ({_better(ours, theirs)})" for ours, theirs in pairs[part]]
         better = sum(_better(*pair) for pair in pairs[part])
         count = sum(len(ours) for ours, _ in pairs[part])
-        yield f"| {part} | {' | '.join(cells)} | {better} of {count} | {together[part]:.3f} |"
+        yield f"| {part} | {' | '.join(cells)} | {better} of {count} | {together[part]:.4f} |"
 
 
 def _better(ours: Runs, theirs: Runs) -> int:
