@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth.arrays import Floats, frozen
+from gpsynth.arrays import Floats, Ints, frozen
 from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
@@ -150,19 +150,15 @@ class Evaluator:
     ) -> Rollouts:
         """One candidate a parameter vector, or a plan."""
         starts = len(self.problem.starts)
-        lane = np.arange(candidates * starts, dtype=np.int32)
-        picks = np.zeros((len(lane), 3), dtype=np.int32)
-        picks[:, 0] = lane % starts
-        picks[:, 1 if len(vectors) > 1 else 2] = lane // starts
         lanes = Lanes(
-            picks=picks,
+            picks=_picks(candidates, starts, 1 if len(vectors) > 1 else 2),
             starts=self.problem.starts,
             goals=self.goals,
             parameters=np.ascontiguousarray(vectors),
             points=np.ascontiguousarray(plans.points, dtype=np.float64),
             ends=np.ascontiguousarray(plans.ends, dtype=np.float64),
         )
-        trace = self._trace(len(lane), clock.periods) if paths else _NO_TRACE
+        trace = self._trace(candidates * starts, clock.periods) if paths else _NO_TRACE
         result = roll(self, program, sealed(lanes), clock, trace)
         rollouts = _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
         return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
@@ -272,6 +268,15 @@ def roll(evaluator: Evaluator, program: Program, lanes: Lanes, clock: Clock, tra
         with ThreadPoolExecutor(evaluator.threads) as pool:
             list(pool.map(lambda ends: run(*ends), slices))
     return result
+
+
+@lru_cache(maxsize=16)
+def _picks(candidates: int, starts: int, varying: int) -> Ints:
+    """(L, 3) start, parameter vector and schedule of each lane; `varying` is the column that tells candidates apart."""
+    lane = np.arange(candidates * starts, dtype=np.int32)
+    picks = np.zeros((len(lane), 3), dtype=np.int32)
+    picks[:, 0], picks[:, varying] = lane % starts, lane // starts
+    return frozen(picks)
 
 
 def periods_of(problem: Problem, horizon: float) -> int:

@@ -1,4 +1,4 @@
-"""A law put into its closed loop: dead instructions left out, sines joined to cosines, rows used again.
+"""A law put into its closed loop: dead instructions left out, others joined in pairs, rows used again.
 
 What an instruction writes is needed until its last use; then the row is free for another result. So a workspace stays
 in the first-level cache whatever the length of the code.
@@ -12,6 +12,7 @@ from numba import types
 from gpsynth.arrays import Ints
 from gpsynth.kernels.compile import CODE, INTEGERS, kernel, part
 from gpsynth.kernels.machine import SINE_AND_COSINE
+from gpsynth.kernels.pairs import FIRST_NUMBERS, FIRSTS, JOINED, SECONDS, SQUARE
 from gpsynth.operations import CODES
 
 _SINE, _COSINE = CODES["sin"], CODES["cos"]
@@ -30,9 +31,17 @@ def _row(stack: Any) -> Any:
 
 
 @part
+def _arity(operation: int, arities: Any) -> Any:
+    """How many rows an instruction reads."""
+    if operation < JOINED:
+        return arities[operation]
+    return arities[operation & (FIRST_NUMBERS - 1)] + (1 if (operation - JOINED) >> 8 < SQUARE else 0)
+
+
+@part
 def _release(code: Any, i: int, arities: Any, last: Any, moved: Any, stack: Any, first: int) -> None:
     """Give the rows back that instruction i is the last to read."""
-    for k in range(2, 2 + arities[code[i, 0]]):
+    for k in range(2, 2 + _arity(code[i, 0], arities)):
         row = code[i, k]
         if last[row] == i and moved[row] >= first:
             last[row] = -1
@@ -97,6 +106,60 @@ def _last_uses(code: Any, kept: Any, arities: Any, rows: int) -> Any:
     return last
 
 
+@part
+def _uses(code: Any, kept: Any, arities: Any, last: Any) -> Any:
+    """(rows,) how often a row is read by instructions that matter; one that is read from outside counts as two."""
+    uses = np.zeros(len(last), np.int32)
+    for row in kept:
+        uses[row] = 2
+    for i in range(len(code)):
+        if last[code[i, 1]] >= 0:
+            for k in range(2, 2 + arities[code[i, 0]]):
+                uses[code[i, k]] += 1
+    return uses
+
+
+@part
+def _leads(code: Any, i: int, begin: int, end: int) -> bool:
+    """Whether instruction i of part [begin, end) can be the first of a pair."""
+    operation = code[i, 0]
+    if operation in (_SINE, _COSINE):  # both of one value are worth more
+        for k in range(begin, end):
+            if code[k, 0] == _SINE + _COSINE - operation and code[k, 2] == code[i, 2]:
+                return False
+    return operation < JOINED and FIRSTS[operation]
+
+
+@part
+def _pair(code: Any, i: int, j: int, k: int, arities: Any, last: Any) -> None:
+    """Make instruction j a pair with i, which gives its operand k."""
+    count, first, second, other = arities[code[i, 0]], code[i, 0], code[j, 0], code[j, 3 - k]
+    code[j, 0] = JOINED + FIRST_NUMBERS * SECONDS[second, k] + first
+    for operand in range(2, 2 + count):
+        code[j, operand] = code[i, operand]
+        last[code[i, operand]] = max(last[code[i, operand]], j)
+    if arities[second] == 2:
+        code[j, 2 + count] = other
+    last[code[i, 1]] = -1
+
+
+@part
+def _join(code: Any, ends: Any, kept: Any, arities: Any, last: Any) -> None:
+    """Join instructions of one part in pairs: the second takes the first along, whose value nobody else reads."""
+    uses, writer = _uses(code, kept, arities, last), np.full(len(last), -1, np.int32)
+    begin = 0
+    for end in ends:
+        for j in range(begin, end):
+            for k in range(min(arities[code[j, 0]], 2)):
+                row = code[j, 2 + k]
+                matters = last[code[j, 1]] >= 0 and uses[row] == 1 and writer[row] >= begin
+                if matters and SECONDS[code[j, 0], k] >= 0 and _leads(code, writer[row], begin, end):
+                    _pair(code, writer[row], j, k, arities, last)
+                    break
+            writer[code[j, 1]] = j
+        begin = end
+
+
 @kernel(
     _INTEGER(
         *(CODE, CODE, INTEGERS, CODE, INTEGERS, _INTEGER, _INTEGER, INTEGERS, INTEGERS),
@@ -126,6 +189,7 @@ def arrange(
     """
     code = _whole(before, law, outputs, after, inputs, first, computed)
     last = _last_uses(code, kept, arities, len(moved))
+    _join(code, ends, kept, arities, last)
     moved[:] = 0
     for i in range(len(code)):
         moved[code[i, 1]] = -1

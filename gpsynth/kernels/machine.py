@@ -15,6 +15,7 @@ from gpsynth.kernels import trigonometry
 from gpsynth.kernels.carried import on_vectors
 from gpsynth.kernels.compile import CODE, INTEGERS, MATRIX, OUT_MATRIX, VECTOR, kernel, part, widest_vectors
 from gpsynth.kernels.elementary import function_of
+from gpsynth.kernels.pairs import JOINED, pair
 from gpsynth.kernels.vectors import WIDTH, put, take
 from gpsynth.operations import OPERATIONS
 
@@ -64,7 +65,9 @@ def execute(code: Any, first: int, last: int, w: Any, lanes: int) -> None:
         index = np.uint64(number)  # never negative, so nobody needs to count from the end
         operation = code[index, 0]
         d, a, b, c = code[index, 1], code[index, 2], code[index, 3], code[index, 4]
-        if operation == 0:
+        if operation >= JOINED:
+            pair(operation, w, lanes, d, a, b, c)
+        elif operation == 0:
             each2(add, w, lanes, d, a, b)
         elif operation == 1:
             each2(sub, w, lanes, d, a, b)

@@ -116,46 +116,55 @@ def advance(
     If `bends`, the first and the last derivatives of the step are kept in the rows from `slope` on.
     """
     first, last = code.ends[0] if clock.hold else 0, len(clock.b) - 1
-    for i in range(n):
-        for lane in range(0, count, WIDTH):
-            state = take(w, rows.state + i, lane)
-            put(w, rows.base + i, lane, state)
-            put(w, rows.sum + i, lane, state)
     for stage in range(last + 1):
-        for lane in range(0, count, WIDTH):
-            put(w, rows.time, lane, time + clock.c[stage] * clock.step)
+        if stage == 0 or clock.c[stage] != clock.c[stage - 1]:
+            for lane in range(0, count, WIDTH):
+                put(w, rows.time, lane, time + clock.c[stage] * clock.step)
         execute(code.instructions, first, code.ends[1], w, count)
         if bends and stage == 0:
             copy(w, code.rates, rows.slope, n, count)
         if bends and stage == last:
             copy(w, code.rates, rows.slope + n, n, count)
         weight = clock.step * clock.b[stage]
-        for lane in range(0, count, WIDTH):
-            cost = take(w, rows.cost, lane)
-            moved = cost + weight * take(w, code.rates[n], lane)
-            put(w, rows.cost, lane, choose(take(w, rows.alive, lane) > 0.0, moved, cost))
+        charge(w, rows, code.rates[n], count, weight)
+        if stage == 0:  # the state is still the one at the beginning
+            for i in range(n):
+                for lane in range(0, count, WIDTH):
+                    put(w, rows.base + i, lane, take(w, rows.state + i, lane))
+        summed = rows.state if stage == 0 else rows.sum
         if stage == last:
-            finish(w, rows, code, n, count, weight)
+            finish(w, rows, code, n, count, weight, summed)
         else:
-            proceed(w, rows, code, n, count, weight, clock.step * clock.c[stage + 1])
+            proceed(w, rows, code, n, count, weight, summed, clock.step * clock.c[stage + 1])
 
 
 @part
-def proceed(w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float, ahead: float) -> None:
-    """Add a stage's derivatives to the sum, and lead the state to the next stage."""
+def charge(w: Floats, rows: Rows, rate: int, count: int, weight: float) -> None:
+    """Add a stage's running cost for the lanes that run."""
+    for lane in range(0, count, WIDTH):
+        cost = take(w, rows.cost, lane)
+        moved = cost + weight * take(w, rate, lane)
+        put(w, rows.cost, lane, choose(take(w, rows.alive, lane) > 0.0, moved, cost))
+
+
+@part
+def proceed(
+    w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float, summed: int, ahead: float
+) -> None:
+    """Add a stage's derivatives to the sum so far, in rows from `summed` on, and lead the state to the next stage."""
     for i in range(n):
         for lane in range(0, count, WIDTH):
             rate = take(w, code.rates[i], lane)
-            put(w, rows.sum + i, lane, take(w, rows.sum + i, lane) + weight * rate)
+            put(w, rows.sum + i, lane, take(w, summed + i, lane) + weight * rate)
             put(w, rows.state + i, lane, take(w, rows.base + i, lane) + ahead * rate)
 
 
 @part
-def finish(w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float) -> None:
+def finish(w: Floats, rows: Rows, code: Code, n: int, count: int, weight: float, summed: int) -> None:
     """Add the last stage's derivatives to the sum, which is the new state of the lanes that run."""
     for i in range(n):
         for lane in range(0, count, WIDTH):
-            end = take(w, rows.sum + i, lane) + weight * take(w, code.rates[i], lane)
+            end = take(w, summed + i, lane) + weight * take(w, code.rates[i], lane)
             base = take(w, rows.base + i, lane)
             put(w, rows.state + i, lane, choose(take(w, rows.alive, lane) > 0.0, end, base))
 
