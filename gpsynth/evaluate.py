@@ -12,7 +12,7 @@ from gpsynth.arrays import Floats, Ints, frozen
 from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
-from gpsynth.kernels.layout import Clock, Conditions, Lanes, World, sealed
+from gpsynth.kernels.layout import Clock, Conditions, Lanes, World, readonly, sealed
 from gpsynth.kernels.pack import Extent, Frame, Instructions, Loop, frame, pack
 from gpsynth.kernels.tableaus import TABLEAUS
 from gpsynth.law import Law
@@ -136,7 +136,7 @@ class Evaluator:
             raise ProblemError(
                 "the dwell times hold NaN, infinity or a negative number; expected at least 0 s"
             )
-        return _Plans(places, np.cumsum(times, axis=1), reach)
+        return _Plans(readonly(np.ascontiguousarray(places)), readonly(np.cumsum(times, axis=1)), reach)
 
     def _roll(
         self,
@@ -154,12 +154,12 @@ class Evaluator:
             picks=_picks(candidates, starts, 1 if len(vectors) > 1 else 2),
             starts=self.problem.starts,
             goals=self.goals,
-            parameters=np.ascontiguousarray(vectors),
-            points=np.ascontiguousarray(plans.points, dtype=np.float64),
-            ends=np.ascontiguousarray(plans.ends, dtype=np.float64),
+            parameters=readonly(np.ascontiguousarray(vectors)),
+            points=plans.points,
+            ends=plans.ends,
         )
         trace = self._trace(candidates * starts, clock.periods) if paths else _NO_TRACE
-        result = roll(self, program, sealed(lanes), clock, trace)
+        result = roll(self, program, lanes, clock, trace)
         rollouts = _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
         return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
 
@@ -260,13 +260,12 @@ def roll(evaluator: Evaluator, program: Program, lanes: Lanes, clock: Clock, tra
         )
 
     slice_size = block * max(1, -(-total // (block * evaluator.threads)))
-    slices = [(first, min(first + slice_size, total)) for first in range(0, total, slice_size)]
-    if len(slices) <= 1:
-        for ends in slices:
-            run(*ends)
-    else:
-        with ThreadPoolExecutor(evaluator.threads) as pool:
-            list(pool.map(lambda ends: run(*ends), slices))
+    if slice_size >= total:
+        run(0, total)
+        return result
+    with ThreadPoolExecutor(evaluator.threads) as pool:
+        first = range(0, total, slice_size)
+        list(pool.map(lambda begin: run(begin, min(begin + slice_size, total)), first))
     return result
 
 

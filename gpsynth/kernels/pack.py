@@ -6,7 +6,7 @@ import numpy as np
 
 from gpsynth.arrays import Floats, Ints, frozen
 from gpsynth.kernels.arrange import arrange
-from gpsynth.kernels.layout import Code, Rows, readonly
+from gpsynth.kernels.layout import Code, Rows
 from gpsynth.kernels.machine import place
 from gpsynth.operations import CODES, OPERATIONS
 
@@ -38,6 +38,7 @@ class Frame(NamedTuple):
     before: Ints  # (., 5) instructions ahead of the law
     after: Ints  # (., 5) instructions behind it; the negative operand -1 - k is the law's output k
     kept: Ints  # rows of rates, arrival and controls
+    read: Ints  # rows of constants, rates, arrival and controls
     code: Code  # without a law; `ends` counts from the law's last instruction
 
 
@@ -94,7 +95,8 @@ def frame(loop: Loop, extent: Extent, angles: Ints) -> Frame:
     )
     placed = rows._replace(parameter=free, total=free)
     kept = frozen(np.concatenate((code.rates, code.arrival, code.controls)))
-    return Frame(placed, frozen(features.outputs), frozen(features.code), frozen(after), kept, code)
+    read = frozen(np.concatenate((code.constant_rows, kept)))
+    return Frame(placed, frozen(features.outputs), frozen(features.code), frozen(after), kept, read, code)
 
 
 def pack(around: Frame, law: Instructions, parameters: int) -> tuple[Rows, Code]:
@@ -109,16 +111,20 @@ def pack(around: Frame, law: Instructions, parameters: int) -> tuple[Rows, Code]
         *(around.before, law.code, law.outputs, around.after, around.features, first, computed),
         *(around.kept, ARITIES, instructions, ends, moved),
     )
-    places = readonly(moved[around.kept])
-    rates, arrival = len(code.rates), len(code.rates) + len(code.arrival)
-    return around.rows._replace(parameter=int(moved[first]) if parameters else 0, total=total), Code(
-        instructions=readonly(instructions[: ends[-1]]),
-        ends=readonly(ends),
-        constant_rows=readonly(np.concatenate((moved[code.constant_rows], moved[constant_row:computed]))),
-        constants=readonly(np.concatenate((code.constants, law.constants))),
-        rates=places[:rates],
-        arrival=places[rates:arrival],
-        controls=places[arrival:],
+    read = np.concatenate((moved[constant_row:computed], moved[around.read]))
+    constants = np.concatenate((law.constants, code.constants))
+    for array in (instructions, ends, read, constants):
+        array.setflags(write=False)
+    rates = len(constants)
+    arrival, controls = rates + len(code.rates), rates + len(code.rates) + len(code.arrival)
+    return Rows(*around.rows[:-2], int(moved[first]) if parameters else 0, total), Code(
+        instructions=instructions[: ends[-1]],
+        ends=ends,
+        constant_rows=read[:rates],
+        constants=constants,
+        rates=read[rates:arrival],
+        arrival=read[arrival:controls],
+        controls=read[controls:],
         angles=code.angles,
     )
 
