@@ -10,14 +10,14 @@ import numpy as np
 from numba import types
 
 from gpsynth.arrays import Ints
-from gpsynth.kernels.compile import CODE, INTEGERS, kernel, part
+from gpsynth.kernels.compile import CODE, INTEGERS, OUT_CODE, kernel, part
 from gpsynth.kernels.machine import SINE_AND_COSINE
 from gpsynth.kernels.pairs import FIRST_NUMBERS, FIRSTS, JOINED, SECONDS, SQUARE
 from gpsynth.operations import CODES
 
 _SINE, _COSINE = CODES["sin"], CODES["cos"]
 _INTEGER = types.int64
-_OUT_CODE, _OUT_INTEGERS = types.Array(types.int32, 2, "C"), types.Array(types.int32, 1, "C")
+_OUT_INTEGERS = types.Array(types.int32, 1, "C")
 
 
 @part
@@ -127,7 +127,7 @@ def _leads(code: Any, i: int, begin: int, end: int) -> bool:
         for k in range(begin, end):
             if code[k, 0] == _SINE + _COSINE - operation and code[k, 2] == code[i, 2]:
                 return False
-    return operation < JOINED and FIRSTS[operation]
+    return bool(operation < JOINED and FIRSTS[operation])
 
 
 @part
@@ -163,7 +163,7 @@ def _join(code: Any, ends: Any, kept: Any, arities: Any, last: Any) -> None:
 @kernel(
     _INTEGER(
         *(CODE, CODE, INTEGERS, CODE, INTEGERS, _INTEGER, _INTEGER, INTEGERS, INTEGERS),
-        *(_OUT_CODE, _OUT_INTEGERS, _OUT_INTEGERS),
+        *(OUT_CODE, _OUT_INTEGERS, _OUT_INTEGERS),
     )
 )
 def arrange(

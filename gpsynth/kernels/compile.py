@@ -22,6 +22,7 @@ CODE = types.Array(types.int32, 2, "C", readonly=True)
 VECTOR = types.Array(types.float64, 1, "C", readonly=True)
 MATRIX = types.Array(types.float64, 2, "C", readonly=True)
 TENSOR = types.Array(types.float64, 3, "C", readonly=True)
+OUT_CODE = types.Array(types.int32, 2, "C")
 OUT_MATRIX = types.Array(types.float64, 2, "C")
 OUT_TENSOR = types.Array(types.float64, 3, "C")
 

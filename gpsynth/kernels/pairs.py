@@ -17,14 +17,30 @@ from gpsynth.kernels.vectors import WIDTH, put, take
 from gpsynth.operations import CODES, OPERATIONS
 
 JOINED, FIRST_NUMBERS = 1 << 16, 1 << 8
-ADD, SUB, FROM, MUL, MAX, MAX_OF, MIN, MIN_OF, SQUARE, ABS, NEG = range(11)  # `_OF`, FROM: the value comes second
+ADD, SUB, FROM, MUL, MAX, MAX_OF, MIN, MIN_OF, SQUARE, ABS, NEG = range(
+    11
+)  # FROM, _OF: the value comes second
 _NEVER = -1
 
 _SECONDS = {
     **{"add": (ADD, ADD), "sub": (SUB, FROM), "mul": (MUL, MUL), "max": (MAX, MAX_OF), "min": (MIN, MIN_OF)},
     **{"square": (SQUARE, _NEVER), "abs": (ABS, _NEVER), "neg": (NEG, _NEVER)},
 }
-_FIRSTS = ("add", "sub", "mul", "div", "div_protected", "max", "min", "square", "abs", "neg", "sin", "cos", "tanh")
+_FIRSTS = (
+    "add",
+    "sub",
+    "mul",
+    "div",
+    "div_protected",
+    "max",
+    "min",
+    "square",
+    "abs",
+    "neg",
+    "sin",
+    "cos",
+    "tanh",
+)
 
 SECONDS = frozen(np.array([_SECONDS.get(row.name, (_NEVER, _NEVER)) for row in OPERATIONS], dtype=np.int32))
 FIRSTS = frozen(np.array([row.name in _FIRSTS for row in OPERATIONS]))
@@ -38,7 +54,7 @@ _ADD, _SUB, _MUL, _DIV, _DIV_PROTECTED, _MAX, _MIN, _SQUARE, _ABS, _NEG, _SIN, _
 
 
 @part
-def _then(second: int, value: Any, w: Any, row: int, lane: int) -> Any:
+def _then(second: int, value: Any, w: Any, row: int, lane: int) -> Any:  # noqa: PLR0911 a table
     """What the second instruction makes of the value and of a row."""
     if second == ADD:
         return _add(value, take(w, row, lane))

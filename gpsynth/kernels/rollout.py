@@ -35,14 +35,18 @@ from gpsynth.kernels.vectors import WIDTH, choose, magnitude, put, take
 
 ARRIVAL, END, COST, CLEARANCE, EXPOSURE, DEPTH, DIVERGED, TERMINAL = range(8)  # columns of the result
 ENORMOUS = 1e10  # a state beyond it has diverged
+NUMBER = 3  # column of a block's picks that numbers its lanes
 INSTANT = 1e-9  # s; a clock reading this close to a switching time has reached it
 
 _INTEGER = types.int64
 
 
 @part
-def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int) -> None:
-    """Set a block up: constants, and for lanes [first, first + count) start, goal, target and parameters."""
+def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int, picks: Ints) -> None:
+    """Set a block up: constants, and for lanes [first, first + count) start, goal, target and parameters.
+
+    picks (., 4) takes for each column what its lane has, and the number of the lane in the block.
+    """
     w[:] = 0.0
     for k in range(len(code.constants)):
         w[code.constant_rows[k], :] = code.constants[k]
@@ -55,6 +59,9 @@ def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int
             w[rows.target + i, lane] = lanes.goals[start, i]
         for k in range(p):
             w[rows.parameter + k, lane] = lanes.parameters[vector, k]
+        for k in range(3):
+            picks[lane, k] = lanes.picks[first + lane, k]
+        picks[lane, NUMBER] = lane
         w[rows.alive, lane] = 1.0
         w[rows.arrival, lane] = np.inf
         w[rows.near, lane] = np.inf
@@ -79,9 +86,9 @@ def retarget(
     code: Code,
     lanes: Lanes,
     clock: Clock,
+    picks: Ints,
     passed: npt.NDArray[np.int64],
     shift: Floats,
-    first: int,
     count: int,
     time: float,
 ) -> None:
@@ -91,18 +98,19 @@ def retarget(
     """
     k, n = lanes.ends.shape[1], lanes.starts.shape[1]
     for lane in range(count):
-        plan, due = lanes.picks[first + lane, 2], passed[lane]
+        plan, number = picks[lane, 2], picks[lane, NUMBER]
+        due = passed[number]
         while due < k:
-            over = time >= lanes.ends[plan, due] + shift[lane] - INSTANT
+            over = time >= lanes.ends[plan, due] + shift[number] - INSTANT
             if not over:
                 if not (
                     clock.reach > 0.0
                     and distance(w, rows, code, lanes.points[plan, due], lane) <= clock.reach
                 ):
                     break
-                shift[lane] = time - lanes.ends[plan, due]
+                shift[number] = time - lanes.ends[plan, due]
             due += 1
-        passed[lane] = due
+        passed[number] = due
         for i in range(n):
             w[rows.target + i, lane] = lanes.points[plan, due, i] if due < k else w[rows.goal + i, lane]
 
@@ -201,12 +209,16 @@ def judge(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, t
 
 
 @part
-def hopeless(w: Floats, rows: Rows, bound: float, count: int) -> bool:
+def hopeless(w: Floats, rows: Rows, picks: Ints, bound: float, count: int) -> bool:
     """Whether the lanes together cost more than `bound` already or one has diverged; then all of them cost infinity."""
-    total, lost = 0.0, 0.0
+    costs = w[rows.sum]  # nobody reads it between two steps
+    lost = 0.0
     for lane in range(count):
-        total += w[rows.cost, lane]
+        costs[picks[lane, NUMBER]] = w[rows.cost, lane]
         lost += w[rows.diverged, lane]
+    total = 0.0
+    for number in range(count):  # in an order that does not depend on which lanes have ended
+        total += costs[number]
     if total <= bound and lost == 0.0:
         return False
     w[rows.cost, :] = np.inf
@@ -214,11 +226,29 @@ def hopeless(w: Floats, rows: Rows, bound: float, count: int) -> bool:
 
 
 @part
-def store(w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, result: Floats) -> None:
+def gather(w: Floats, rows: Rows, picks: Ints, count: int) -> None:
+    """Put the lanes that run ahead of those that have ended: columns change places."""
+    last = count - 1
+    for lane in range(count):
+        if w[rows.alive, lane] <= 0.0:
+            while last > lane and w[rows.alive, last] <= 0.0:
+                last -= 1
+            if last <= lane:
+                return
+            for row in range(len(w)):
+                w[row, lane], w[row, last] = w[row, last], w[row, lane]
+            for k in range(NUMBER + 1):
+                picks[lane, k], picks[last, k] = picks[last, k], picks[lane, k]
+
+
+@part
+def store(
+    w: Floats, rows: Rows, code: Code, picks: Ints, n: int, first: int, count: int, result: Floats
+) -> None:
     """Write the block's results, one row a lane; what diverged costs +inf."""
     q = len(code.arrival) - 1
     for lane in range(count):
-        out = result[first + lane]
+        out = result[first + picks[lane, NUMBER]]
         bad = w[rows.diverged, lane] > 0.0 or not np.isfinite(w[rows.cost, lane])
         out[ARRIVAL], out[END] = w[rows.arrival, lane], w[rows.end, lane]
         out[COST] = np.inf if bad else w[rows.cost, lane]
@@ -232,13 +262,22 @@ def store(w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, res
 
 @part
 def record(
-    w: Floats, rows: Rows, code: Code, n: int, first: int, count: int, period: int, time: float, trace: Floats
+    w: Floats,
+    rows: Rows,
+    code: Code,
+    picks: Ints,
+    n: int,
+    first: int,
+    count: int,
+    period: int,
+    time: float,
+    trace: Floats,
 ) -> None:
     """Keep state, control and target of the lanes that have not ended before `time`."""
     m = len(code.controls)
     for lane in range(count):
         if w[rows.end, lane] == time:
-            out = trace[first + lane, period]
+            out = trace[first + picks[lane, NUMBER], period]
             for i in range(n):
                 out[i] = w[rows.state + i, lane]
                 out[n + m + i] = w[rows.target + i, lane]
@@ -280,46 +319,52 @@ def roll(
     widest_vectors()
     n = lanes.starts.shape[1]
     w = workspace(rows.total, -(-min(block, last - first) // WIDTH) * WIDTH)
+    picks = np.empty((block, NUMBER + 1), np.int32)
     passed = np.empty(block, np.int64)
     shift = np.empty(block)
     bends = len(world.position) > 0
     for begin in range(first, last, block):
         count = min(block, last - begin)
-        load(w, rows, code, lanes, begin, count)
-        settle(w, rows, lanes, given, begin, count)
+        load(w, rows, code, lanes, begin, count, picks)
+        settle(w, rows, picks, given, count)
         passed[:] = 0
         shift[:] = 0.0
+        ahead = count  # columns behind it hold lanes that have ended
         for period in range(clock.periods + 1):
             time = period * clock.substeps * clock.step
             if lanes.ends.shape[1] > 0:
-                retarget(w, rows, code, lanes, clock, passed, shift, begin, count, time)
-            running = judge(w, rows, code, clock, n, count, time)
-            if clock.bound < np.inf and hopeless(w, rows, clock.bound, count):
+                retarget(w, rows, code, lanes, clock, picks, passed, shift, ahead, time)
+            running = judge(w, rows, code, clock, n, ahead, time)
+            if clock.bound < np.inf and hopeless(w, rows, picks, clock.bound, count):
                 break
             if len(given.noise) > 0:
-                measure(w, rows, lanes, given, begin, count, period)
+                measure(w, rows, picks, given, ahead, period)
             if clock.hold or len(trace) > 0:
-                execute(code.instructions, 0, code.ends[0], w, count)
+                execute(code.instructions, 0, code.ends[0], w, ahead)
             if len(trace) > 0:
-                record(w, rows, code, n, begin, count, period, time, trace)
+                record(w, rows, code, picks, n, begin, count, period, time, trace)
             if running == 0 or period == clock.periods:
                 break
+            if -(-running // WIDTH) < -(-ahead // WIDTH):  # a vector less
+                gather(w, rows, picks, ahead)
+                ahead = running
             if given.slots > 0:
-                command(w, rows, code, given, count, period)
+                command(w, rows, code, given, ahead, period)
             for substep in range(clock.substeps):
                 now = time + substep * clock.step
                 if given.slots > 0:
                     step = period * clock.substeps + substep
-                    arrive(w, rows, lanes, given, begin, count, step, clock.substeps)
-                advance(w, rows, code, clock, n, count, now, bends)
+                    arrive(w, rows, picks, given, ahead, step, clock.substeps)
+                advance(w, rows, code, clock, n, ahead, now, bends)
                 if bends:
                     approach(
-                        *(w, count, rows.base, rows.state, rows.slope, rows.slope + n, rows.alive, rows.near),
+                        *(w, ahead, rows.base, rows.state, rows.slope, rows.slope + n, rows.alive, rows.near),
                         *(world.position, world.circles, world.area, now, clock.step, world.margin),
                     )
             for k in range(len(code.angles)):
                 row = rows.state + code.angles[k]
-                for lane in range(0, count, WIDTH):
+                for lane in range(0, ahead, WIDTH):
                     angle = take(w, row, lane)
                     put(w, row, lane, choose(take(w, rows.alive, lane) > 0.0, wrap(angle), angle))
-        store(w, rows, code, n, begin, count, result)
+        execute(code.instructions, code.ends[1], code.ends[2], w, count)  # the law has used its rows since
+        store(w, rows, code, picks, n, begin, count, result)

@@ -48,6 +48,16 @@ def _chain(length: int) -> Program:
     return builder.build([value], ("f",))
 
 
+def _wide(count: int) -> Program:
+    """A sum of `count` terms that are all there before the first two are added."""
+    builder = Builder(FEATURES)
+    terms = [builder.apply("tanh", builder.apply("mul", 0, builder.constant(k + 1.0))) for k in range(count)]
+    value = terms.pop()
+    while terms:
+        value = builder.apply("min", value, terms.pop())
+    return builder.build([value], ("f",))
+
+
 def _packed(law: Program, hold: bool = True) -> tuple[Rows, Code]:
     return pack(Evaluator(_problem(np.zeros((1, 3)), hold)).frame, instructions(law), len(law.parameters))
 
@@ -89,3 +99,12 @@ def test_a_step_is_what_the_programs_say_bit_for_bit(hold: bool) -> None:
             assert rolled.cost[0].tobytes() == (0.1 * rates[:, 3]).tobytes()
             terminal = problem.arrival(np.hstack((end, goal)))[:, 1:]
             assert rolled.terminal[0].tobytes() == terminal.tobytes()
+
+
+def test_a_law_computed_after_the_end_leaves_the_terminal_costs_alone() -> None:
+    starts = np.random.default_rng(9).uniform(-2.0, 2.0, (21, 3))
+    problem = _problem(starts)
+    rolled = Evaluator(problem).of_program(_wide(30), NONE)
+    goal = np.tile(problem.goal, (len(starts), 1))
+    terminal = problem.arrival(np.hstack((rolled.final[0], goal)))[:, 1:]
+    assert rolled.terminal[0].tobytes() == terminal.tobytes()
