@@ -9,6 +9,7 @@ from gpsynth.evaluate import Evaluator, instructions
 from gpsynth.kernels.layout import Code, Rows
 from gpsynth.kernels.machine import SINE_AND_COSINE
 from gpsynth.kernels.pack import pack
+from gpsynth.kernels.pairs import ABS, FIRST_NUMBERS, JOINED
 from gpsynth.operations import CODES, OPERATIONS
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
@@ -79,6 +80,18 @@ def test_what_no_output_needs_is_left_out() -> None:
 def test_sine_and_cosine_of_one_value_are_one_instruction(hold: bool) -> None:
     _, code = _packed(_chain(1), hold)
     assert [_count(code, number) for number in (CODES["sin"], CODES["cos"], SINE_AND_COSINE)] == [0, 0, 1]
+
+
+def test_a_value_that_one_instruction_reads_goes_to_it_without_a_row() -> None:
+    builder = Builder(FEATURES)
+    error = builder.inputs[0]  # goal - state
+    once, twice = (
+        _packed(builder.build([builder.apply(name, *operands)], ("f",)))[1]
+        for name, operands in (("abs", (error,)), ("mul", (error, error)))
+    )
+    assert once.ends[0] == len(("sub abs", "limit"))
+    assert once.instructions[0, 0] == JOINED + FIRST_NUMBERS * ABS + CODES["sub"]
+    assert twice.ends[0] == len(("sub", "mul", "limit"))
 
 
 @pytest.mark.parametrize("hold", [True, False])

@@ -10,7 +10,7 @@ import pytest
 
 from gpsynth.arrays import Floats, frozen
 from gpsynth.builder import Builder
-from gpsynth.kernels import elementary, machine, vectors
+from gpsynth.kernels import elementary, machine, pairs, vectors
 from gpsynth.operations import OPERATIONS, Operation
 from gpsynth.program import Program
 
@@ -68,6 +68,26 @@ def test_sine_and_cosine_together_are_those_apart() -> None:
     for row, name in ((1, "sin"), (2, "cos")):
         apart = np.array([elementary.evaluate(name, angle) for angle in angles.tolist()])
         assert _same_bits(w[row, : len(angles)].copy(), apart)
+
+
+@pytest.mark.parametrize("first", [row for row, leads in zip(OPERATIONS, pairs.FIRSTS, strict=True) if leads])
+def test_a_pair_gives_the_bits_of_its_two_instructions(first: Operation) -> None:
+    operands = _operands(first.arity + 1, np.random.default_rng(5))
+    lanes, other = len(operands), first.arity
+    w = np.zeros((other + 2, -(-lanes // vectors.WIDTH) * vectors.WIDTH))
+    w[: other + 1, :lanes] = operands.T
+    for second, numbers in zip(OPERATIONS, pairs.SECONDS, strict=True):
+        for number, ahead in zip(numbers.tolist(), (True, False), strict=True):
+            if number < 0:
+                continue
+            operation = pairs.JOINED + pairs.FIRST_NUMBERS * number + OPERATIONS.index(first)
+            code = frozen(np.array([[operation, other + 1, 0, 1, 2]], dtype=np.int32))
+            machine.execute(code, 0, 1, w, lanes)
+            values = [elementary.evaluate(first.name, *row[:other]) for row in operands.tolist()]
+            both = [(value, row[other]) for value, row in zip(values, operands.tolist(), strict=True)]
+            taken = [pair if ahead else pair[::-1] for pair in both]
+            expected = [elementary.evaluate(second.name, *pair[: second.arity]) for pair in taken]
+            assert _same_bits(w[other + 1, :lanes].copy(), np.array(expected)), (second.name, ahead)
 
 
 def test_without_the_compiler_the_machine_gives_the_same_bits() -> None:

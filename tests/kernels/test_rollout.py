@@ -261,6 +261,31 @@ def test_blocks_and_threads_change_no_bit(hold: bool) -> None:
                 )
 
 
+def test_lanes_that_have_ended_make_room_and_change_no_bit() -> None:
+    starts = np.random.default_rng(12).uniform(-4.0, 4.0, (70, 1))
+    choices = {"running": lambda x, u, goal: x.x**2, "terminal": lambda x, goal: (np.sin(x.x),), "hold": True}
+    problem, program = _integrator(lambda e: 2.0 * e.error_x, starts=starts, **choices)
+    law = Law(problem.plant, problem.features, program, np.empty(0))
+    points, dwell = np.array([[[1.0], [-1.0]], [[2.0], [0.5]]]), np.array([[0.5, 0.5], [1.25, 0.0]])
+
+    def found(block: int) -> list[Rollouts]:
+        by = Evaluator(problem, block=block)
+        bounded = by.of_program(program, NONE, bound=4.0)
+        return [
+            by.of_program(program, NONE, paths=True),
+            by.of_schedules(law, points, dwell, reach=0.2),
+            bounded,
+        ]
+
+    for together, alone in zip(found(256), found(1), strict=True):
+        assert len(np.unique(together.end)) > 10
+        for name in set(vars(together)) - {"paths"}:
+            assert getattr(together, name).tobytes() == getattr(alone, name).tobytes(), name
+        if together.paths is not None and alone.paths is not None:
+            for name, path in vars(together.paths).items():
+                assert path.tobytes() == getattr(alone.paths, name).tobytes(), name
+
+
 def _loop(rate):
     """x' = u from 1 and 2, a cost of x^2 a second, under the law u = rate * error."""
     plant = Plant(lambda x, u: (u.f,), states={"x": ""}, controls={"f": ("", -10.0, 10.0)}, name="point")
