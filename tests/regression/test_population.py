@@ -7,7 +7,7 @@ from gpsynth.arrays import Floats
 from gpsynth.builder import Builder
 from gpsynth.errors import RegressionError
 from gpsynth.kernels import elementary
-from gpsynth.kernels.data_code import BINARY, NAMES
+from gpsynth.kernels.data_code import BINARY, NAMES, OPCODE
 from gpsynth.regression.expressions import evaluate, flatten, program_of
 from gpsynth.regression.population import columns_of, population, scores, scoring, share, values_of
 from gpsynth.regression.population import evaluate as run
@@ -76,6 +76,24 @@ def test_shared_subtrees_are_computed_once_and_give_the_same_bits() -> None:
 def test_numbers_that_differ_in_sign_of_zero_are_not_shared() -> None:
     values = evaluate([("div", ("number", 1.0), ("number", zero)) for zero in (0.0, -0.0)], np.ones((1, 1)))
     assert values[:, 0].tolist() == [np.inf, -np.inf]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_operation_on_numbers_is_a_number_with_the_same_bits(name: str) -> None:
+    rows = np.array([(a, b) for a in (*SPECIAL, 0.7, 31.25) for b in (*SPECIAL, -1.5)])
+    arity = 2 if name in BINARY else 1
+    trees = [(name, *(("number", x) for x in row[:arity])) for row in rows.tolist()]
+    shared = share(flatten(trees).population)
+    assert not np.isin(shared.code[:, 0], list(OPCODE.values())).any()
+    columns = evaluate([(name, *(("variable", j) for j in range(arity)))], rows)[0]
+    assert same_bits(np.ascontiguousarray(evaluate(trees, rows[:1])[:, 0]), columns)
+
+
+def test_the_row_of_a_value_read_for_the_last_time_is_used_again() -> None:
+    tree = ("variable", 0)
+    for _ in range(20):
+        tree = ("sin", ("mul", tree, ("variable", 1)))
+    assert share(flatten([tree]).population).rows == 3
 
 
 @pytest.mark.parametrize("count", [1, 7, 8, 9, 255, 256, 257, 600])
