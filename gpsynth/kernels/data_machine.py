@@ -65,7 +65,7 @@ from gpsynth.kernels.machine import (
 )
 from gpsynth.kernels.vectors import WIDTH, aligned, put, put_away, take
 
-BLOCK = 256  # rows; shorter blocks lose more to the choice of a branch than the first-level cache gives back
+BLOCK = 512  # rows; shorter blocks lose more to the choice of a branch than the caches give back
 
 
 @part

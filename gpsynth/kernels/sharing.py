@@ -41,7 +41,7 @@ _SECOND = 0xC2B2AE3D27D4EB4F - 2**64
 
 @kernel(
     types.UniTuple(types.int64, 2)(
-        *(INTEGERS, INTEGERS, INTEGERS, VECTOR, INTEGERS, _INTEGERS, _INTEGERS),
+        *(INTEGERS, INTEGERS, INTEGERS, VECTOR, INTEGERS, types.int64, _INTEGERS, _INTEGERS),
         *(_INTEGERS, _INTEGERS, _INTEGERS, _NUMBERS, _INTEGERS, _INTEGERS),
     )
 )
@@ -51,6 +51,7 @@ def share(
     b: Any,
     numbers: Any,
     roots: Any,
+    variables: int,
     table: Any,
     ids: Any,
     u_ops: Any,
@@ -60,15 +61,20 @@ def share(
     output: Any,
     outputs: Any,
 ) -> tuple[int, int]:
-    """Unique nodes of flat expressions, in order of first appearance, and how many of them are roots.
+    """Unique nodes of flat expressions, the variables and then the others as they appear, and how many are roots.
 
     An operation on numbers is a number. `ids` says which node each position is, `output` which output a node is or -1,
     `outputs` which of them each root is. `table` has a power of two of entries, more than positions, all zero.
     """
     mask = len(table) - 1
-    count = 0
+    count = variables
+    for j in range(variables):
+        u_ops[j], output[j] = VARIABLE - j, _NONE
     for t in range(len(ops)):
         op = int(ops[t])
+        if op <= VARIABLE:
+            ids[t] = VARIABLE - op
+            continue
         operands = arity(op)
         x = np.int64(ids[a[t]] if operands > 0 else 0)
         y = np.int64(ids[b[t]] if operands > 1 else 0)

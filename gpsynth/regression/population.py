@@ -102,14 +102,14 @@ def share(whole: Population, scored: Scoring | None = None) -> Shared:
     """One program of all expressions: equal subtrees once, rows reused; outputs are values, or only scores."""
     size, flat = len(whole.ops), sealed(whole)
     table = np.zeros(1 << size.bit_length(), dtype=np.int32)
-    ids, ops, a, b, output = np.empty((5, size), dtype=np.int32)
-    numbers, outputs = np.empty(size), np.empty(len(whole.roots), dtype=np.int32)
-    count, distinct = sharing.share(*flat, table, ids, ops, a, b, numbers, output, outputs)
-    unique = sealed(Population(ops[:count], a[:count], b[:count], numbers[:count], output[:count]))
     if scored is None:
-        variables, target = max(0, int(VARIABLE - ops[:count].min(initial=0)) + 1), -1
+        variables, target = max(0, int(VARIABLE - whole.ops.min(initial=0)) + 1), -1
     else:
         variables, target = len(scored.columns), len(scored.columns) - 2
+    ids, ops, a, b, output = np.empty((5, size + variables), dtype=np.int32)
+    numbers, outputs = np.empty(size + variables), np.empty(len(whole.roots), dtype=np.int32)
+    count, distinct = sharing.share(*flat, variables, table, ids, ops, a, b, numbers, output, outputs)
+    unique = sealed(Population(ops[:count], a[:count], b[:count], numbers[:count], output[:count]))
     room = count + distinct + np.count_nonzero(ops[:count] == CONSTANT)
     code, immediate = np.empty((room, 4), dtype=np.int32), np.empty(room)
     length, rows = sharing.place(*unique, variables, target, code, immediate)

@@ -8,6 +8,7 @@ from gpsynth.builder import Builder
 from gpsynth.errors import RegressionError
 from gpsynth.kernels import elementary
 from gpsynth.kernels.data_code import BINARY, NAMES, OPCODE
+from gpsynth.kernels.data_machine import BLOCK
 from gpsynth.regression.expressions import evaluate, flatten, program_of
 from gpsynth.regression.population import columns_of, population, scores, scoring, share, values_of
 from gpsynth.regression.population import evaluate as run
@@ -96,7 +97,7 @@ def test_the_row_of_a_value_read_for_the_last_time_is_used_again() -> None:
     assert share(flatten([tree]).population).rows == 3
 
 
-@pytest.mark.parametrize("count", [1, 7, 8, 9, 255, 256, 257, 600])
+@pytest.mark.parametrize("count", [1, 15, 16, 17, BLOCK - 1, BLOCK, BLOCK + 1, 600])
 def test_any_number_of_rows_gives_the_same_bits(count: int) -> None:
     rng = np.random.default_rng(4)
     trees = [random_expression(rng, 15, 2) for _ in range(8)]
