@@ -23,7 +23,9 @@ from gpsynth.kernels.data_code import (
     EMIT,
     EXP,
     FILL,
+    FROM,
     HALF,
+    JOINED,
     LOG,
     MAX,
     MIN,
@@ -65,7 +67,7 @@ from gpsynth.kernels.machine import (
 )
 from gpsynth.kernels.vectors import WIDTH, aligned, put, put_away, take
 
-BLOCK = 512  # rows; shorter blocks lose more to the choice of a branch than the caches give back
+BLOCK = 256  # rows; shorter blocks lose more to the choice of a branch than the caches give back
 
 
 @part
@@ -80,6 +82,19 @@ def each_right(function: Any, w: Any, lanes: int, d: int, number: float, a: int)
     """Row d = function(number, row a)."""
     for at in range(0, lanes, WIDTH):
         put(w, d, at, function(number, take(w, a, at)))
+
+
+@part
+def joined(first: Any, second: Any, w: Any, lanes: int, d: int, a: int, b: int, c: int) -> None:
+    """Row d = second(first(row a, row b), row c)."""
+    for at in range(0, lanes, WIDTH):
+        put(w, d, at, second(first(take(w, a, at), take(w, b, at)), take(w, c, at)))
+
+
+@part
+def take_from(a: Any, b: Any) -> Any:
+    """b - a."""
+    return b - a
 
 
 @part
@@ -130,6 +145,30 @@ def execute(code: Any, numbers: Any, first: int, last: int, w: Any, lanes: int, 
             each_left(div, w, lanes, d, a, number)
         elif operation == NUMBER_DIV:
             each_right(div, w, lanes, d, number, a)
+        elif operation == JOINED + 4 * ADD + ADD:
+            joined(add, add, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * ADD + SUB:
+            joined(add, sub, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * ADD + MUL:
+            joined(add, mul, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * ADD + FROM:
+            joined(add, take_from, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * SUB + ADD:
+            joined(sub, add, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * SUB + SUB:
+            joined(sub, sub, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * SUB + MUL:
+            joined(sub, mul, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * SUB + FROM:
+            joined(sub, take_from, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * MUL + ADD:
+            joined(mul, add, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * MUL + SUB:
+            joined(mul, sub, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * MUL + MUL:
+            joined(mul, mul, w, lanes, d, a, b, code[index, 4])
+        elif operation == JOINED + 4 * MUL + FROM:
+            joined(mul, take_from, w, lanes, d, a, b, code[index, 4])
         elif operation == FILL:
             for at in range(0, lanes, WIDTH):
                 put(w, d, at, number)

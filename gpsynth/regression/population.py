@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from gpsynth.arrays import Floats, Ints
 from gpsynth.errors import RegressionError
-from gpsynth.kernels import data_machine, sharing
+from gpsynth.kernels import data_machine, placing, sharing
 from gpsynth.kernels.data_code import CONSTANT, NAMES, OPCODE, VARIABLE
 from gpsynth.kernels.layout import readonly, sealed
 from gpsynth.kernels.vectors import WIDTH, aligned
@@ -31,7 +31,7 @@ class Shared(NamedTuple):
     nodes: int  # unique nodes, leaves included
     outputs: Ints  # (p,) which output each expression is
     distinct: int  # outputs
-    code: Ints  # (c, 4)
+    code: Ints  # (c, 5)
     numbers: Floats  # (c,)
     rows: int  # of the workspace
 
@@ -111,8 +111,8 @@ def share(whole: Population, scored: Scoring | None = None) -> Shared:
     count, distinct = sharing.share(*flat, variables, table, ids, ops, a, b, numbers, output, outputs)
     unique = sealed(Population(ops[:count], a[:count], b[:count], numbers[:count], output[:count]))
     room = count + distinct + np.count_nonzero(ops[:count] == CONSTANT)
-    code, immediate = np.empty((room, 4), dtype=np.int32), np.empty(room)
-    length, rows = sharing.place(*unique, variables, target, code, immediate)
+    code, immediate = np.empty((room, 5), dtype=np.int32), np.empty(room)
+    length, rows = placing.place(*unique, variables, target, code, immediate)
     return Shared(count, outputs, distinct, code[:length], immediate[:length], max(rows, 1))
 
 

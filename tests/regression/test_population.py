@@ -97,6 +97,25 @@ def test_the_row_of_a_value_read_for_the_last_time_is_used_again() -> None:
     assert share(flatten([tree]).population).rows == 3
 
 
+@pytest.mark.parametrize("second", ["add", "sub", "mul"])
+@pytest.mark.parametrize("first", ["add", "sub", "mul"])
+def test_two_operations_in_one_instruction_give_the_bits_of_two(first: str, second: str) -> None:
+    rng = np.random.default_rng(7)
+    rows = np.concatenate((rng.choice(SPECIAL, (300, 3)), rng.normal(size=(300, 3))))
+    inner = (first, ("variable", 0), ("variable", 1))
+    values = np.array([elementary.evaluate(first, *row[:2]) for row in rows.tolist()])
+    for left in (True, False):
+        tree = (second, inner, ("variable", 2)) if left else (second, ("variable", 2), inner)
+        operands = zip(values.tolist(), rows[:, 2].tolist(), strict=True)
+        expected = [elementary.evaluate(second, *(pair if left else pair[::-1])) for pair in operands]
+        assert len(share(flatten([tree]).population).code) == 2
+        assert same_bits(evaluate([tree], rows)[0], np.array(expected))
+    squared = ("mul", inner, inner)
+    assert same_bits(evaluate([squared], rows)[0], values * values)
+    kept = evaluate([(second, inner, ("variable", 2)), ("neg", inner)], rows)[1]
+    assert same_bits(kept, -values)
+
+
 @pytest.mark.parametrize("count", [1, 15, 16, 17, BLOCK - 1, BLOCK, BLOCK + 1, 600])
 def test_any_number_of_rows_gives_the_same_bits(count: int) -> None:
     rng = np.random.default_rng(4)
