@@ -16,7 +16,7 @@ from gpsynth.arrays import Floats
 from gpsynth.kernels.data_code import EMIT, OPCODE
 from gpsynth.kernels.layout import readonly
 from gpsynth.regression import evolution as evolving
-from gpsynth.regression.evolution import evolve
+from gpsynth.regression.evolution import SIZE, Evolution, Trees, evolve, flat_of
 from gpsynth.regression.polish import data_of
 from gpsynth.regression.population import Shared, columns_of, evaluate, scores, scoring, share
 from gpsynth.regression.state import State
@@ -24,6 +24,7 @@ from tests.bench.data_speed import TREES, VARIABLES, Tree, evolved_trees, popula
 from tests.bench.measure import machine, median_time, pin
 
 ROWS, REPEATED, LINE = 1000, 20, 2000
+FUNCTIONS = frozenset(("add", "sub", "mul", "div", "sin", "cos", "exp", "log", "sqrt"))
 BLOCKS = (64, 128, 256, 512, 1024)
 
 
@@ -51,7 +52,8 @@ def main() -> None:
         times = (_microseconds(lambda b=block, s=shared: evaluate(s, columns, b)) for block in BLOCKS)
         print(label.ljust(26) + "".join(f"{time:9.0f}" for time in times))
     names = ("add", "mul", "div", "sqrt", "sin", "exp", "log", "tanh")
-    print("\nshares of 60 generations: " + ", ".join(f"{k} {v:.0%}" for k, v in _shares(rng).items()))
+    print("\ndistinct nodes of a generation, and those its parents do not have: {} {}".format(*_new(rng)))
+    print("shares of 60 generations: " + ", ".join(f"{k} {v:.0%}" for k, v in _shares(rng).items()))
     print("ns per row, alone: " + ", ".join(f"{name} {_alone(OPCODE[name], columns):.3f}" for name in names))
 
 
@@ -80,12 +82,25 @@ def _alone(operation: int, columns: Floats) -> float:
     return _microseconds(lambda: evaluate(shared, columns)) * 1e3 / LINE / ROWS
 
 
+def _new(rng: np.random.Generator) -> tuple[int, int]:
+    """What columns kept from one generation to the next could save, after 20 generations."""
+    inputs = rng.uniform(-1.0, 1.0, (128, 3))
+    y = np.exp(np.sin(3.0 * inputs[:, 0])) * inputs[:, 1] + inputs[:, 2] ** 2
+    evolution = Evolution(State(data_of(inputs, y, np.ones(len(y))), FUNCTIONS, rng))
+    parents = evolution.scored(evolution.random(SIZE))
+    for _ in range(20):
+        parents = evolution.next_generation(parents)
+    children = evolution.children(parents)
+    together = Trees(*(np.concatenate(pair) for pair in zip(parents.trees, children, strict=True)))
+    mine, theirs, all_ = (share(flat_of(trees)).nodes for trees in (children, parents.trees, together))
+    return mine, all_ - theirs
+
+
 def _shares(rng: np.random.Generator) -> dict[str, float]:
     """What the parts of an evolution on 1000 rows take of its time."""
     inputs = rng.uniform(-2.0, 2.0, (ROWS, 3))
     y = np.exp(np.sin(3.0 * inputs[:, 0])) * inputs[:, 1] + 0.1 * rng.standard_normal(ROWS)
-    functions = frozenset(("add", "sub", "mul", "div", "sin", "cos", "exp", "log", "sqrt"))
-    evolution = evolve(State(data_of(inputs, y, np.ones(ROWS)), functions, rng))
+    evolution = evolve(State(data_of(inputs, y, np.ones(ROWS)), FUNCTIONS, rng))
     next(evolution)
     profile = cProfile.Profile(time.process_time)
     profile.enable()
