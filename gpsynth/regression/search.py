@@ -83,10 +83,11 @@ def steps(state: State) -> Iterator[None]:
 
 def _shelves(state: State) -> _Shelves:
     rows = state.data.inputs[state.rows]
-    full = enumerate_formulas(rows, state.functions, state.library)
-    limit = LIMITS[0] if state.late else state.library
-    arithmetic = enumerate_formulas(rows, state.functions & ARITHMETIC, limit)
-    outer = wrapped(arithmetic, state.functions, limit // 4)
+    full, arithmetic = (
+        enumerate_formulas(rows, functions, state.library, lambda: state.late)
+        for functions in (state.functions, state.functions & ARITHMETIC)
+    )
+    outer = wrapped(arithmetic, state.functions, state.library // 4)
     state.evaluations += len(full.ops) + len(outer.ops)
     tiny, small, large = (shelf(full, limit, "formulas") for limit in LIMITS)
     few, some, many = (shelf(arithmetic, limit, "arithmetic") for limit in LIMITS)
