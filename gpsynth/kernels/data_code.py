@@ -28,3 +28,7 @@ MAX, MIN = (CODES[name] for name in ("max", "min"))
 # Instructions beyond the table: one operand is a number, a row is filled with it, a row is an output,
 # or only its sums with the target are.
 ADD_NUMBER, SUB_NUMBER, NUMBER_SUB, MUL_NUMBER, DIV_NUMBER, NUMBER_DIV, FILL, EMIT, SCORE = range(100, 109)
+
+# Two of addition, subtraction and product in one, JOINED + 4 first + second: (a first b) second c. The second may also
+# be FROM, c - (a first b).
+JOINED, FROM = 109, 3

@@ -16,9 +16,17 @@ from numba import types
 from numba.core import cgutils
 from numba.core.typeconv.castgraph import Conversion
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
-from numba.extending import lower_builtin, lower_cast, models, register_model, type_callable
+from numba.extending import (
+    lower_builtin,
+    lower_cast,
+    models,
+    register_jitable,
+    register_model,
+    type_callable,
+)
 
 WIDTH = 16  # lanes
+LINE = 8  # numbers in a line of the cache
 
 Build = Callable[..., Any]
 
@@ -191,6 +199,19 @@ def put(w: Any, row: int, lane: int, values: Any) -> None:
     w[row, lane : lane + WIDTH] = values
 
 
+def put_away(w: Any, row: int, lane: int, values: Any) -> None:
+    """Like `put`, past the caches, for what nobody reads soon; `w` must be `aligned`, or the process ends."""
+    w[row, lane : lane + WIDTH] = values
+
+
+@register_jitable(error_model="numpy", forceinline=True)
+def aligned(rows: int, columns: int) -> Any:
+    """Memory for (rows, columns) numbers that begins with a line of the cache; columns a multiple of WIDTH."""
+    numbers = np.empty(rows * columns + LINE)
+    first = LINE - numbers.ctypes.data // 8 % LINE
+    return numbers[first : first + rows * columns].reshape(rows, columns)
+
+
 @type_callable(take)
 def _type_of_take(context: Any) -> Build:
     return lambda w, row, lane: signature(REAL, w, types.int64, types.int64)
@@ -199,6 +220,9 @@ def _type_of_take(context: Any) -> Build:
 @type_callable(put)
 def _type_of_put(context: Any) -> Build:
     return lambda w, row, lane, values: signature(types.void, w, types.int64, types.int64, REAL)
+
+
+type_callable(put_away)(_type_of_put)
 
 
 def _place(context: Any, builder: Any, typed: Any, values: Any) -> Any:
@@ -216,4 +240,12 @@ def _take(context: Any, builder: Any, typed: Any, values: Any) -> Any:
 @lower_builtin(put, types.Array, types.int64, types.int64, REAL)
 def _put(context: Any, builder: Any, typed: Any, values: Any) -> Any:
     builder.store(values[3], _place(context, builder, typed, values), align=8)
+    return context.get_dummy_value()
+
+
+@lower_builtin(put_away, types.Array, types.int64, types.int64, REAL)
+def _put_away(context: Any, builder: Any, typed: Any, values: Any) -> Any:
+    stored = builder.store(values[3], _place(context, builder, typed, values), align=8 * LINE)
+    once = builder.module.add_metadata([ir.Constant(ir.IntType(32), 1)])
+    stored.set_metadata("nontemporal", once)
     return context.get_dummy_value()

@@ -4,14 +4,16 @@ from math import comb
 
 import numpy as np
 
+from gpsynth.arrays import Floats
 from gpsynth.regression import linear
-from gpsynth.regression.expressions import Expression, variable
+from gpsynth.regression.expressions import Expression, evaluate, variable
 from gpsynth.regression.state import State
 from gpsynth.regression.targets import Target
 
 DEGREE = 8
 MOST = 130  # monomials
 MOST_VARIABLES = 20  # of a linear model
+ENOUGH = 4  # rows for each monomial; what is no polynomial on them is none on all
 EXACT = 1e-18
 SMALL = 1e-7  # terms that contribute less are rounding
 
@@ -22,23 +24,45 @@ def polynomials(state: State, targets: list[Target]) -> None:
     if m < min(count - 1, MOST_VARIABLES):
         columns = np.ascontiguousarray(state.data.inputs.T)
         state.consider([linear.sum_of([variable(j) for j in range(m)], columns, targets[0])], "linear model")
-    basis = list(linear.monomials(state.data.inputs, DEGREE, min(count // 2, MOST)))[1:]
+    basis = _monomials(state.data.inputs[:1], min(count // 2, MOST))[0]
     if not basis:
         return
-    terms = np.array([values for _, values in basis])
-    expressions: list[Expression] = [expression for expression, _ in basis if expression is not None]
+    some = np.linspace(0, count - 1, min(count, ENOUGH * len(basis))).astype(int)
+    terms = _monomials(state.data.inputs[some], min(count // 2, MOST))[1]
     for target in targets:
+        if state.late:
+            return
         state.evaluations += len(basis)
-        spread = target.values - target.values.mean()
-        for some in _counts(len(basis), m):
-            factors, constant = linear.coefficients(terms[:some], target.values)
-            rest = target.values - factors @ terms[:some] - constant
-            if rest @ rest < EXACT * (spread @ spread):
-                sizes = np.abs(factors) * np.abs(terms[:some]).max(axis=1)
-                kept = np.flatnonzero(sizes > SMALL * np.abs(target.values).max())
-                sums = linear.sum_of([expressions[k] for k in kept], terms[kept], target)
-                state.consider([sums], f"polynomial of {target.name}")
+        for number in _counts(len(basis), m):
+            exact = _rest(terms[:number], target.values[some]) < EXACT
+            if exact and _is_polynomial(state, target, basis[:number]):
                 break
+
+
+def _monomials(inputs: Floats, most: int) -> tuple[list[Expression], Floats]:
+    """Monomials beside the constant, and their values (k, n)."""
+    whole = [(e, values) for e, values in linear.monomials(inputs, DEGREE, most) if e is not None]
+    return [expression for expression, _ in whole], np.array([values for _, values in whole])
+
+
+def _rest(terms: Floats, values: Floats) -> float:
+    """What the best sum of the terms leaves of the squares of values (n,), as a share; 0 if all values are equal."""
+    factors, constant = linear.coefficients(terms, values)
+    rest, spread = values - factors @ terms - constant, values - values.mean()
+    return float(rest @ rest) / (float(spread @ spread) or np.inf)
+
+
+def _is_polynomial(state: State, target: Target, monomials: list[Expression]) -> bool:
+    """Whether a target is a sum of the monomials on all rows; then the sum is considered."""
+    terms = evaluate(monomials, state.data.inputs)
+    if not _rest(terms, target.values) < EXACT:
+        return False
+    factors, _ = linear.coefficients(terms, target.values)
+    sizes = np.abs(factors) * np.abs(terms).max(axis=1)
+    kept = np.flatnonzero(sizes > SMALL * np.abs(target.values).max())
+    sums = linear.sum_of([monomials[k] for k in kept], terms[kept], target)
+    state.consider([sums], f"polynomial of {target.name}")
+    return True
 
 
 def _counts(count: int, m: int) -> list[int]:

@@ -123,7 +123,7 @@ class Evolution:
     def scored(self, trees: Trees) -> Scored:
         """Errors of all trees; equal subtrees are evaluated once."""
         self.state.evaluations += len(trees.lengths)
-        return Scored(trees, *scores(_flat(trees), self.scoring))
+        return Scored(trees, *scores(flat_of(trees), self.scoring))
 
     def children(self, parents: Scored) -> Trees:
         """CHILDREN trees: parents by tournament, a subtree exchanged or replaced by a random one, a node changed."""
@@ -219,7 +219,7 @@ class Evolution:
     def harvest(self, population: Scored, targets: list[Target]) -> None:
         """Sums of subtrees of the best trees, by forward selection: what evolved in different trees comes together."""
         best = np.argsort(population.error, kind="stable")[:HARVESTED].astype(np.int32)
-        flat = _flat(population.trees.take(best))
+        flat = flat_of(population.trees.take(best))
         shared = share(flat._replace(roots=np.arange(len(flat.ops), dtype=np.int32)))
         values = evaluate(shared, self.columns)[:, : len(self.inputs)]
         _, position = np.unique(shared.outputs, return_index=True)
@@ -244,7 +244,8 @@ def _joined(first: Trees, second: Trees) -> Trees:
     )
 
 
-def _flat(trees: Trees) -> Population:
+def flat_of(trees: Trees) -> Population:
+    """The trees one after the other."""
     size = int(trees.lengths.sum())
     ops, a, b = np.empty((3, size), dtype=np.int32)
     numbers, roots = np.empty(size), np.empty(len(trees.lengths), dtype=np.int32)
@@ -264,7 +265,7 @@ def _scaled_flat(trees: Trees, slope: Floats, constant: Floats) -> Population:
         ops[rows, trees.lengths + k] = op
     numbers[rows, trees.lengths], numbers[rows, trees.lengths + 1] = constant, slope
     scaled = Trees(ops, numbers, trees.lengths + np.int32(4))
-    flat = _flat(scaled)
+    flat = flat_of(scaled)
     # postfix order: tree, constant, slope, mul, add; so mul takes slope and tree, add takes the constant
     multiplied, added = flat.roots - 1, flat.roots
     flat.a[multiplied], flat.b[multiplied] = flat.roots - 2, flat.roots - 4

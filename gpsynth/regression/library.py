@@ -3,7 +3,7 @@
 Two formulas with the same values on the rows at hand count as the same (semantic hashing); the cheaper one stays.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -63,15 +63,19 @@ class Library(NamedTuple):
         return (name, *(self.expression(int(operand)) for operand in operands))
 
 
-def enumerate_formulas(rows: Floats, functions: frozenset[str], limit: int) -> Library:
-    """All formulas over the columns of rows (r, m) by rising cost until there are `limit` of them."""
+def enumerate_formulas(
+    rows: Floats, functions: frozenset[str], limit: int, late: Callable[[], bool] = lambda: False
+) -> Library:
+    """All formulas over the columns of rows (r, m) by rising cost until there are `limit` of them, or it is late."""
     growing = _Growing(rows)
     for cost in range(LEAF + STEP, 40):
         before = growing.count
         for name, a, b in _candidates(growing, functions, cost):
+            if late():
+                break
             growing.extend(name, a, b, cost, limit)
         growing.close(cost)
-        if growing.count >= limit or (growing.count == before and cost > 12):
+        if growing.count >= limit or late() or (growing.count == before and cost > 12):
             break
     return growing.library()
 

@@ -9,8 +9,8 @@ import numpy as np
 from gpsynth.arrays import Floats, Ints
 from gpsynth.kernels import fitting
 from gpsynth.kernels.data_code import CONSTANT, FILL
-from gpsynth.kernels.data_machine import WIDTH
 from gpsynth.kernels.layout import readonly
+from gpsynth.kernels.vectors import WIDTH
 from gpsynth.regression.algebra import simplify
 from gpsynth.regression.expressions import Expression, Flat, flatten, numbers, size, with_numbers
 from gpsynth.regression.factoring import compact

@@ -8,9 +8,10 @@ import numpy.typing as npt
 
 from gpsynth.arrays import Floats, Ints
 from gpsynth.errors import RegressionError
-from gpsynth.kernels import data_machine, sharing
+from gpsynth.kernels import data_machine, placing, sharing
 from gpsynth.kernels.data_code import CONSTANT, NAMES, OPCODE, VARIABLE
 from gpsynth.kernels.layout import readonly, sealed
+from gpsynth.kernels.vectors import WIDTH, aligned
 from gpsynth.program import Program
 
 
@@ -30,7 +31,7 @@ class Shared(NamedTuple):
     nodes: int  # unique nodes, leaves included
     outputs: Ints  # (p,) which output each expression is
     distinct: int  # outputs
-    code: Ints  # (c, 4)
+    code: Ints  # (c, 5)
     numbers: Floats  # (c,)
     rows: int  # of the workspace
 
@@ -60,18 +61,12 @@ def scores(whole: Population, data: Scoring) -> tuple[Floats, Floats, Floats]:
     Linear scaling (Keijzer 2003) in one pass: sums are taken of values minus the first of them.
     """
     shared = share(whole, data)
-    out = np.zeros((shared.distinct, 3 * data_machine.WIDTH + 1))
+    sums, lines = np.zeros((shared.distinct, 3 * WIDTH + 1)), np.empty((shared.distinct, 3))
     block = min(data_machine.BLOCK, data.columns.shape[1])
-    data_machine.run(readonly(shared.code), readonly(shared.numbers), data.columns, shared.rows, block, out)
-    with np.errstate(all="ignore"):
-        values, squares, products = out[:, :-1].reshape(-1, 3, data_machine.WIDTH).sum(axis=2).T
-        center = values / data.weight
-        variance = squares - values * center
-        slope = np.where(variance > 1e-28 * squares, products / variance, 0.0)
-        error = np.maximum(data.total - slope * products, 0.0) / (data.total or 1.0)
-        error = np.where(np.isfinite(squares) & np.isfinite(error), error, np.inf)
-        constant = data.mean - slope * (out[:, -1] + center)
-    return error[shared.outputs], slope[shared.outputs], constant[shared.outputs]
+    data_machine.run(readonly(shared.code), readonly(shared.numbers), data.columns, shared.rows, block, sums)
+    data_machine.best_lines(readonly(sums), data.weight, data.mean, data.total, lines)
+    error, slope, constant = lines[shared.outputs].T.copy()
+    return error, slope, constant
 
 
 def population(programs: Sequence[Program]) -> Population:
@@ -105,35 +100,31 @@ def population(programs: Sequence[Program]) -> Population:
 
 def share(whole: Population, scored: Scoring | None = None) -> Shared:
     """One program of all expressions: equal subtrees once, rows reused; outputs are values, or only scores."""
-    size = len(whole.ops)
-    table = np.zeros(1 << max(4, (2 * size - 1).bit_length()), dtype=np.int32)
-    ids, ops, a, b, last, row, free = np.empty((7, size), dtype=np.int32)
-    values = np.empty(size)
-    flat = sealed(whole)
-    count = sharing.share(flat.ops, flat.a, flat.b, flat.numbers, table, ids, ops, a, b, values)
-    nodes, roots = np.unique(ids[whole.roots], return_inverse=True)
-    output = np.full(count, -1, dtype=np.int32)
-    output[nodes] = np.arange(len(nodes))
-    code = np.empty((3 * count + 2 * len(nodes), 4), dtype=np.int32)
-    numbers = np.empty(len(code))
-    unique = sealed(Population(ops[:count], a[:count], b[:count], values[:count], output))
+    size, flat = len(whole.ops), sealed(whole)
+    table = np.zeros(1 << size.bit_length(), dtype=np.int32)
     if scored is None:
-        variables, target = max(0, int(VARIABLE - ops[:count].min(initial=0)) + 1), -1
+        variables, target = max(0, int(VARIABLE - whole.ops.min(initial=0)) + 1), -1
     else:
         variables, target = len(scored.columns), len(scored.columns) - 2
-    length, rows = sharing.place(*unique, variables, target, last, row, free, code, numbers)
-    return Shared(count, _ints(roots), len(nodes), code[:length], numbers[:length], max(rows, 1))
+    ids, ops, a, b, output = np.empty((5, size + variables), dtype=np.int32)
+    numbers, outputs = np.empty(size + variables), np.empty(len(whole.roots), dtype=np.int32)
+    count, distinct = sharing.share(*flat, variables, table, ids, ops, a, b, numbers, output, outputs)
+    unique = sealed(Population(ops[:count], a[:count], b[:count], numbers[:count], output[:count]))
+    room = count + distinct + np.count_nonzero(ops[:count] == CONSTANT)
+    code, immediate = np.empty((room, 5), dtype=np.int32), np.empty(room)
+    length, rows = placing.place(*unique, variables, target, code, immediate)
+    return Shared(count, outputs, distinct, code[:length], immediate[:length], max(rows, 1))
 
 
 def columns_of(inputs: Floats) -> Floats:
     """Rows (n, m) as columns (m, N), N the next multiple of the machine's width; the last row is repeated."""
-    padding = -len(inputs) % data_machine.WIDTH
+    padding = -len(inputs) % WIDTH
     return np.ascontiguousarray(np.pad(inputs, ((0, padding), (0, 0)), mode="edge").T)
 
 
 def evaluate(shared: Shared, columns: Floats, block: int = data_machine.BLOCK) -> Floats:
     """The values (u, N) of the unique outputs on columns (m, N) as `columns_of` makes them."""
-    out = np.empty((shared.distinct, columns.shape[1]))
+    out: Floats = aligned(shared.distinct, columns.shape[1])
     code, numbers, columns = sealed(_Group(shared.code, shared.numbers, columns))
     rows = max(shared.rows, len(columns))
     data_machine.run(code, numbers, columns, rows, min(block, columns.shape[1]), out)

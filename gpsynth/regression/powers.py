@@ -25,6 +25,8 @@ def powers(state: State, shelf: Shelf, target: Target) -> None:
     few = Columns(columns.unit[:PAIRED], columns.formula[:PAIRED])
     subsets += [Subset((i, j), rest) for i, j, rest in pairs(few, goal, np.empty((0, len(goal))), 4)]
     for single in select(few, goal, terms=1, width=6):
+        if state.late:
+            break
         given = few.unit[list(single.columns)]
         some = Columns(few.unit[: PAIRED // 3], few.formula[: PAIRED // 3])
         subsets += [

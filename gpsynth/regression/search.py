@@ -35,17 +35,17 @@ class Budget(NamedTuple):
 
 def search(state: State, budget: Budget) -> State:
     """Structured steps and generations of evolution in turn, until the budget is spent or the formula is exact."""
-    begin = time.process_time()
+    if budget.seconds is not None:
+        state.deadline = time.process_time() + budget.seconds
     structured, evolving = steps(state), evolve(state)
     count, settled = 0, 0
-    while state.evaluations < budget.evaluations:
-        if budget.seconds is not None and time.process_time() - begin >= budget.seconds:
-            break
+    while state.evaluations < budget.evaluations and not state.late:
         count += 1
         if next(structured, _OVER) is _OVER or (count > BEGINNING and not state.done):
             for _ in range(GENERATIONS):
-                next(evolving)
-        if count % LOOSENING == 0:
+                if not state.late:
+                    next(evolving)
+        if count % LOOSENING == 0 and not state.late:
             loosen_front(state)
         if state.done:
             settled += 1
@@ -83,8 +83,10 @@ def steps(state: State) -> Iterator[None]:
 
 def _shelves(state: State) -> _Shelves:
     rows = state.data.inputs[state.rows]
-    full = enumerate_formulas(rows, state.functions, state.library)
-    arithmetic = enumerate_formulas(rows, state.functions & ARITHMETIC, state.library)
+    full, arithmetic = (
+        enumerate_formulas(rows, functions, state.library, lambda: state.late)
+        for functions in (state.functions, state.functions & ARITHMETIC)
+    )
     outer = wrapped(arithmetic, state.functions, state.library // 4)
     state.evaluations += len(full.ops) + len(outer.ops)
     tiny, small, large = (shelf(full, limit, "formulas") for limit in LIMITS)

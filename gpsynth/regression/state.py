@@ -1,5 +1,7 @@
 """What a search knows: the data, the rows that columns are chosen on, and the front of what was found."""
 
+import math
+import time
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -51,12 +53,18 @@ class State:
         self.front = Front()
         self.loosened: set[Expression] = set()
         self.evaluations = 0
+        self.deadline = math.inf  # processor time
         self.found: list[tuple[int, str, float]] = []  # evaluations, what found it, error
 
     @property
     def done(self) -> bool:
         """Whether what is left is rounding."""
         return self.front.error < EXACT
+
+    @property
+    def late(self) -> bool:
+        """Whether the time is up; what takes long looks at it on its way and stops with what it has."""
+        return self.deadline < math.inf and time.process_time() >= self.deadline
 
     def members(self) -> list[Candidate]:
         """The front; where there was nothing to explain it is the mean."""

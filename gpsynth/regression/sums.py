@@ -39,6 +39,8 @@ def exhaustive(state: State, shelf: Shelf, target: Target, most: int = PAIRED) -
     found = [Subset((i, j), rest) for i, j, rest in pairs(columns, values, np.empty((0, len(values))), 4)]
     few = Columns(columns.unit[: most // 3], columns.formula[: most // 3])
     for single in select(few, values, terms=1, width=6):
+        if state.late:
+            break
         given = few.unit[list(single.columns)]
         triples = pairs(few, values, given, 1)
         found += [Subset((*single.columns, i, j), rest * single.rest) for i, j, rest in triples]
@@ -77,6 +79,8 @@ def multiplied(state: State, multiples: Multiples, target: Target) -> None:
         norm = float(np.sqrt(residual @ residual))
         if norm == 0.0:
             return
+        if state.late:
+            break
         made = list(dict.fromkeys(made + best_products(pairs_of_factors, residual / norm, MULTIPLIED)))
         state.evaluations += len(left) * len(right)
         if not made:

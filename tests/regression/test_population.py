@@ -7,7 +7,8 @@ from gpsynth.arrays import Floats
 from gpsynth.builder import Builder
 from gpsynth.errors import RegressionError
 from gpsynth.kernels import elementary
-from gpsynth.kernels.data_code import BINARY, NAMES
+from gpsynth.kernels.data_code import BINARY, NAMES, OPCODE
+from gpsynth.kernels.data_machine import BLOCK
 from gpsynth.regression.expressions import evaluate, flatten, program_of
 from gpsynth.regression.population import columns_of, population, scores, scoring, share, values_of
 from gpsynth.regression.population import evaluate as run
@@ -78,7 +79,44 @@ def test_numbers_that_differ_in_sign_of_zero_are_not_shared() -> None:
     assert values[:, 0].tolist() == [np.inf, -np.inf]
 
 
-@pytest.mark.parametrize("count", [1, 7, 8, 9, 255, 256, 257, 600])
+@pytest.mark.parametrize("name", NAMES)
+def test_an_operation_on_numbers_is_a_number_with_the_same_bits(name: str) -> None:
+    rows = np.array([(a, b) for a in (*SPECIAL, 0.7, 31.25) for b in (*SPECIAL, -1.5)])
+    arity = 2 if name in BINARY else 1
+    trees = [(name, *(("number", x) for x in row[:arity])) for row in rows.tolist()]
+    shared = share(flatten(trees).population)
+    assert not np.isin(shared.code[:, 0], list(OPCODE.values())).any()
+    columns = evaluate([(name, *(("variable", j) for j in range(arity)))], rows)[0]
+    assert same_bits(np.ascontiguousarray(evaluate(trees, rows[:1])[:, 0]), columns)
+
+
+def test_the_row_of_a_value_read_for_the_last_time_is_used_again() -> None:
+    tree = ("variable", 0)
+    for _ in range(20):
+        tree = ("sin", ("mul", tree, ("variable", 1)))
+    assert share(flatten([tree]).population).rows == 3
+
+
+@pytest.mark.parametrize("second", ["add", "sub", "mul"])
+@pytest.mark.parametrize("first", ["add", "sub", "mul"])
+def test_two_operations_in_one_instruction_give_the_bits_of_two(first: str, second: str) -> None:
+    rng = np.random.default_rng(7)
+    rows = np.concatenate((rng.choice(SPECIAL, (300, 3)), rng.normal(size=(300, 3))))
+    inner = (first, ("variable", 0), ("variable", 1))
+    values = np.array([elementary.evaluate(first, *row[:2]) for row in rows.tolist()])
+    for left in (True, False):
+        tree = (second, inner, ("variable", 2)) if left else (second, ("variable", 2), inner)
+        operands = zip(values.tolist(), rows[:, 2].tolist(), strict=True)
+        expected = [elementary.evaluate(second, *(pair if left else pair[::-1])) for pair in operands]
+        assert len(share(flatten([tree]).population).code) == 2
+        assert same_bits(evaluate([tree], rows)[0], np.array(expected))
+    squared = ("mul", inner, inner)
+    assert same_bits(evaluate([squared], rows)[0], values * values)
+    kept = evaluate([(second, inner, ("variable", 2)), ("neg", inner)], rows)[1]
+    assert same_bits(kept, -values)
+
+
+@pytest.mark.parametrize("count", [1, 15, 16, 17, BLOCK - 1, BLOCK, BLOCK + 1, 600])
 def test_any_number_of_rows_gives_the_same_bits(count: int) -> None:
     rng = np.random.default_rng(4)
     trees = [random_expression(rng, 15, 2) for _ in range(8)]

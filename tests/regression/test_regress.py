@@ -6,8 +6,12 @@ import pytest
 import gpsynth
 from gpsynth.errors import RegressionError
 from gpsynth.export import to_sympy
+from gpsynth.regression.dense import polynomials
 from gpsynth.regression.front import Candidate
 from gpsynth.regression.joint import choose, joined
+from gpsynth.regression.polish import data_of
+from gpsynth.regression.state import State
+from gpsynth.regression.targets import plain
 
 RNG = np.random.default_rng(9)
 ROWS = RNG.uniform(0.5, 3.0, (60, 3))
@@ -64,6 +68,21 @@ def test_the_choice_is_the_shortest_description() -> None:
     much_better = Candidate(("mul", ("variable", 0), ("variable", 1)), 1e-6, 9)
     assert choose(joined([[small, barely_better]]), 30).parts == (small,)
     assert choose(joined([[small, much_better]]), 30).parts == (much_better,)
+
+
+def test_a_search_whose_time_is_up_does_not_begin() -> None:
+    assert gpsynth.regress(ROWS, EASY["wave"], seconds=1e-9).evaluations == 1
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-3])
+def test_a_polynomial_is_one_on_all_rows(off: float) -> None:
+    inputs = np.random.default_rng(6).uniform(-1.0, 1.0, (3000, 3))
+    y = inputs[:, 0] ** 3 - 2.0 * inputs[:, 1] * inputs[:, 2]
+    y[1234] += off
+    state = State(data_of(inputs, y, np.ones(3000)), frozenset(("add", "mul")), np.random.default_rng(0))
+    polynomials(state, [plain(y)])
+    assert [source for _, source, _ in state.found][1:] == ([] if off else ["polynomial of y"])
+    assert state.done == (off == 0.0)
 
 
 def test_a_result_goes_to_the_exporters() -> None:
