@@ -14,6 +14,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers import CMAES, CMAESState
@@ -86,7 +87,7 @@ class StructureSearch(Generic[G]):
     """An evolutionary search over the formulas of an encoding; satisfies `optimizers.protocol.Search`.
 
     Costs are (batch, S), one for each start; complexity is known without evaluation. Raises OptimizerError for
-    settings below 1.
+    settings out of their range.
     """
 
     encoding: Encoding[G]
@@ -103,9 +104,15 @@ class StructureSearch(Generic[G]):
     seeds: tuple[G, ...] = ()  # formulas to begin with
 
     def __post_init__(self) -> None:
+        check_kind("encoding", self.encoding, Encoding, error=OptimizerError)
         for name in ("population", "offspring", "tournament", "patience"):
-            if getattr(self, name) < 1:
-                raise OptimizerError(f"{name} must be at least 1, not {getattr(self, name)}")
+            check_whole(name, getattr(self, name), 1, OptimizerError)
+        check_whole("tuned", self.tuned, 0, OptimizerError)
+        for name in ("simple", "lexicase", "crossover", "fresh", "youth"):
+            value = getattr(self, name)
+            check_number(name, value, OptimizerError)
+            if not 0.0 <= value <= 1.0:
+                raise OptimizerError(f"{name} must be from 0 to 1, not {value}")
 
     def init(self, rng: np.random.Generator) -> SearchState[G]:
         """Nothing is known yet."""

@@ -65,7 +65,10 @@ def wrap_angle(angle: Any) -> Any:
         return elementwise("wrap_angle", angle)
     builder = Builder(("angle",))
     program = builder.build([builder.apply("wrap", builder.inputs[0])])
-    angles = np.asarray(angle, dtype=np.float64)
+    try:
+        angles = np.asarray(angle, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TracingError(f"wrap_angle takes numbers, arrays or traced values, not {angle!r}") from None
     return program(angles.reshape(-1, 1)).reshape(angles.shape)[()]
 
 

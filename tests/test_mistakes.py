@@ -100,6 +100,13 @@ MISTAKES = {
     "template: holes": (lambda: gs.TemplateEncoding("tree", len, ("u",)), "holes of a template are an encoding"),
     "parameters: count": (lambda: gs.ParameterSpace(1.5), "count of parameters must be an integer of at least 0"),
     "rules: a list": (lambda: gs.Rules(limits=["tanh"]), "limits of Rules must be a Mapping, got a list"),
+    "a search's encoding": (lambda: gs.StructureSearch(3), "encoding must be an Encoding, got 3"),
+    "a search's population": (
+        lambda: gs.StructureSearch(ENCODING, population=1.5),
+        "population must be an integer of at least 1, not 1.5",
+    ),
+    "a search's shares": (lambda: gs.StructureSearch(ENCODING, youth=2), "youth must be from 0 to 1, not 2"),
+    "an angle": (lambda: gs.wrap_angle("a"), "wrap_angle takes numbers, arrays or traced values, not 'a'"),
     "epochs: an encoding": (lambda: gs.Epochs(ENCODING), "search must be a StructureSearch, got a TreeEncoding"),
     "optimizer: size": (lambda: gs.PSO(*BOX, size=1.5), "size must be an integer of at least 1, not 1.5"),
     "optimizer: sigma": (lambda: gs.CMAES(*BOX, sigma="wide"), "sigma must be a number, got 'wide'"),

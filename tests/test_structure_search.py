@@ -82,5 +82,5 @@ def test_same_seed_same_search() -> None:
 
 
 def test_settings_below_one_are_an_error() -> None:
-    with pytest.raises(OptimizerError, match="offspring must be at least 1, not 0"):
+    with pytest.raises(OptimizerError, match="offspring must be an integer of at least 1, not 0"):
         StructureSearch(ENCODING, offspring=0)
