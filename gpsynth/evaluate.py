@@ -94,8 +94,8 @@ class Evaluator:
         check_kind("program", program, Program)
         if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
             raise ProblemError(
-                f"the program computes {len(program.outputs)} values from {_listed(program.inputs)}; expected "
-                f"{len(problem.plant.controls)} from the features {_listed(problem.features.names)}"
+                f"the program computes {_listed(program.names)} from {_listed(program.inputs)}; expected "
+                f"{_listed(problem.plant.control_names)} from the features {_listed(problem.features.names)}"
             )
         vectors = np.atleast_2d(numbers("parameters", parameters))
         if vectors.ndim != 2 or vectors.shape[1] != len(program.parameters):

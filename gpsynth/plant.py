@@ -176,7 +176,7 @@ def _dynamics(plant: Plant, given: Callable[..., Any] | Program) -> Program:
             f"expected {len(plant.states)}, one for each of {', '.join(plant.states)}"
         )
     outputs = program.outputs
-    if set(program.names) == set(plant.states):  # a dictionary may come in another order
+    if set(program.names) == set(plant.states):  # a Program may have another order
         outputs = outputs[[program.names.index(state) for state in plant.states]]
     return replace(program, outputs=outputs, names=plant.state_names)
 
@@ -188,8 +188,8 @@ def _traced(plant: Plant, given: Any) -> Program:
     if plant.parameters:
         arguments.append(("p", plant.parameter_names))
     if takes_time(given, len(arguments)):
-        return _parametrized(plant, trace(given, (*arguments, (TIME, TIME))))
-    return _parametrized(plant, trace(given, arguments, unread=(TIME,)))
+        return _parametrized(plant, trace(given, (*arguments, (TIME, TIME)), plant.state_names))
+    return _parametrized(plant, trace(given, arguments, plant.state_names, unread=(TIME,)))
 
 
 def _parametrized(plant: Plant, traced: Program) -> Program:

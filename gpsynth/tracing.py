@@ -31,8 +31,8 @@ def trace(
     """The program of `function`, whose arguments are vectors of named symbols (or one symbol, if given one name).
 
     Its inputs are all names in order, and then those called `unread`, which the function does not see. Outputs are
-    called `names`, or by the keys of a returned dictionary, or after the function. Raises TracingError, naming file and
-    line, for what cannot be traced.
+    called `names`, to which a returned dictionary must have the values, or by the keys of a dictionary, or after the
+    function. Raises TracingError, naming file and line, for what cannot be traced.
     """
     builder = Builder([*(name for _, group in arguments for name in input_names(group)), *unread])
     symbols = _symbols(builder, arguments)
@@ -40,6 +40,8 @@ def trace(
         expected = ", ".join(label for label, _ in arguments)
         raise TracingError(f"{described(function)} must take {len(symbols)} arguments: {expected}")
     result = _run(function, symbols)
+    if names is not None and isinstance(result, Mapping):
+        result = _in_order(function, result, names)
     outputs = _outputs(function, builder, result)
     names = _output_names(function, result, len(outputs)) if names is None else names
     if len(names) != len(outputs):
@@ -158,6 +160,13 @@ def _place(function: Callable[..., Any], frames: Iterable[traceback.FrameSummary
     code = getattr(inspect.unwrap(function), "__code__", None)
     own = [frame for frame in frames if code is not None and frame.filename == code.co_filename]
     return own[-1] if own else frames[min(1, len(frames) - 1)]
+
+
+def _in_order(function: Callable[..., Any], result: Mapping[Any, Any], names: Sequence[str]) -> list[Any]:
+    if set(result) != set(names):
+        returned = ", ".join(map(str, result)) or "no value"
+        raise TracingError(f"{described(function)} returns {returned}; expected {', '.join(names)}")
+    return [result[name] for name in names]
 
 
 def _outputs(function: Callable[..., Any], builder: Builder, result: Any) -> list[Reference]:

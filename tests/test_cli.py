@@ -94,8 +94,8 @@ def test_the_encoding_of_the_plant_file_is_used_unless_another_is_named(capsys, 
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"dynamics": "lambda x, u: (x.v, u.u, 0.0)"}, ("return 3 derivatives", "expected 2")),
-        ({"dynamics": "lambda x, u: (x.v,)"}, ("return 1 derivative", "expected 2")),
+        ({"dynamics": "lambda x, u: (x.v, u.u, 0.0)"}, ("returns 3 values", "expected 2: x, v")),
+        ({"dynamics": "lambda x, u: (x.v,)"}, ("returns 1 values", "expected 2: x, v")),
         ({"limits": "float('nan'), 1.0"}, ("limits of u", "nan")),
         ({"limits": "1.0, -1.0"}, ("limits of u", "lower < upper")),
         ({"dynamics": "lambda x, u: (x.w, u.u)"}, ("line 4", "w")),
@@ -156,7 +156,7 @@ def test_a_law_for_another_problem_is_one_sentence(capsys, law_file, plant_file)
     other = (
         "from dataclasses import replace\nproblem = replace(problem, features=lambda x, target: {'a': x.x})"
     )
-    _fails(capsys, ["assess", law_file, plant_file(after=other)], "expected 1 from the features a")
+    _fails(capsys, ["assess", law_file, plant_file(after=other)], "expected u from the features a")
 
 
 def test_info_says_what_a_law_is(capsys, law_file):

@@ -122,11 +122,13 @@ def test_the_users_dictionaries_are_not_kept():
 NAN, INF = float("nan"), float("inf")
 WRONG = {
     "few_derivatives": (
-        {"dynamics": lambda x, u: (u.v, u.omega)},
+        {
+            "dynamics": trace(
+                lambda x, u: (u.v, u.omega), [("x", tuple(STATES)), ("u", tuple(CONTROLS))], unread=("t",)
+            )
+        },
         "unicycle return 2 derivatives; expected 3, one for each of x, y, theta",
     ),
-    "many_derivatives": ({"dynamics": lambda x, u: (0, 0, 0, 0)}, "return 4 derivatives; expected 3"),
-    "one_derivative": ({"dynamics": lambda x, u: u.v}, "return 1 derivatives; expected 3"),
     "no_function": ({"dynamics": 5}, "a function or a Program, got 5"),
     "other_program": (
         {"dynamics": trace(lambda x: x, [("x", ("x", "y", "theta"))])},
@@ -185,6 +187,21 @@ def test_dynamics_that_cannot_be_traced_are_an_error_with_the_line():
         TracingError, match=r"test_plant.py, line \d+: x has no 'heading'; its names are x, y, theta"
     ):
         plant(lambda x, u: (x.heading, 0.0, 0.0))
+
+
+MISSING = {
+    "few": (lambda x, u: (u.v, u.omega), "returns 2 values; expected 3: x, y, theta"),
+    "many": (lambda x, u: (0, 0, 0, 0), "returns 4 values; expected 3: x, y, theta"),
+    "one": (lambda x, u: u.v, "returns 1 values; expected 3: x, y, theta"),
+    "other_name": (lambda x, u: {"y": 0, "x": 0, "z": 0}, "returns y, x, z; expected x, y, theta"),
+    "name_left_out": (lambda x, u: {"x": 0, "y": 0}, "returns x, y; expected x, y, theta"),
+}
+
+
+@pytest.mark.parametrize(("dynamics", "message"), MISSING.values(), ids=MISSING)
+def test_other_derivatives_than_those_of_the_states_are_an_error_with_the_line(dynamics, message):
+    with pytest.raises(TracingError, match=rf"test_plant.py, line \d+\) {message}"):
+        plant(dynamics)
 
 
 def test_dynamics_with_another_number_of_arguments_are_an_error():

@@ -304,6 +304,15 @@ def test_another_number_of_values_than_names_is_an_error():
         trace(rotated, ARGUMENTS, ["p", "q", "r"])
 
 
+def test_a_dictionary_is_read_by_the_names_wanted():
+    program = trace(lambda x, u: {"right": x.b, "left": x.a}, ARGUMENTS, ["left", "right"])
+    assert program == trace(lambda x, u: (x.a, x.b), ARGUMENTS, ["left", "right"])
+    with pytest.raises(TracingError, match="returns right, up; expected left, right"):
+        trace(lambda x, u: {"right": x.b, "up": x.a}, ARGUMENTS, ["left", "right"])
+    with pytest.raises(TracingError, match="returns no value; expected left"):
+        trace(lambda x, u: {}, ARGUMENTS, ["left"])
+
+
 @pytest.mark.parametrize("function", [lambda x: x.a, lambda x, u, more: x.a])
 def test_another_number_of_arguments_is_an_error(function):
     with pytest.raises(TracingError, match="must take 2 arguments: x, u"):

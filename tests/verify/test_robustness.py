@@ -147,7 +147,7 @@ WRONG = {
     "noise": (lambda: assess(TOWARDS, problem(), Stress(noise=[1.0, 2.0])), "expected (1,)"),
     "law": (
         lambda: assess(TOWARDS, problem(features=lambda x, target: {"gap": target.x - x.x})),
-        "expected 1 from the features gap",
+        "expected v from the features gap",
     ),
 }
 
