@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 import click
 
 from gpsynth import __version__
-from gpsynth.errors import FileError, GpsynthError, LawError
+from gpsynth.errors import FileError, GpsynthError
 from gpsynth.files import write_json
 
 if TYPE_CHECKING:
@@ -229,7 +229,7 @@ def _synthesize(folder: "Run", problem: "Problem", encoding: "Encoding[Any]", **
     )
     write_result(result, folder)
     click.echo(result.table())
-    click.echo(f"the law of least cost, its exports and the front are in {folder.folder}")
+    click.echo(f"the best law, its exports and the front are in {folder.folder}")
 
 
 @contextmanager
@@ -327,14 +327,12 @@ def recorder(folder: "Run", problem: "Problem") -> Callable[["Progress[SearchSta
 
 
 def write_result(result: "SynthesisResult", folder: "Run") -> None:
-    """Write the law of least cost in every form and the front; raises LawError if nothing was found.
+    """Write the best law in every form and the front; raises LawError if nothing was found.
 
     Raises KeyboardInterrupt when that is done, if Ctrl-C has ended the search.
     """
     from gpsynth.runs import INTERRUPTED as CUT_SHORT
 
-    if not result.front:
-        raise LawError(f"no law with a finite cost was found in {result.evaluations} evaluations")
     export_law(result.law, folder.folder)
     front = [_described(entry) for entry in result.front]
     write_json(folder.folder / "front.json", {"format": FRONT_FORMAT, "laws": front})

@@ -85,6 +85,9 @@ class Law:
     def __hash__(self) -> int:
         return hash(self.hash)
 
+    def __str__(self) -> str:
+        return "\n".join(self.formulas())
+
     def __call__(self, x: npt.ArrayLike, target: npt.ArrayLike) -> Floats:
         """The controls (m,) at state x (n,) and target (n,), or (N, m) if one of them or both are (N, n).
 

@@ -16,7 +16,7 @@ from gpsynth.checks import check_function, check_kind, check_whole
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.epochs import Epochs
-from gpsynth.errors import OptimizerError, ProblemError
+from gpsynth.errors import LawError, OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.guesses import Guess, genomes_of
 from gpsynth.islands import Islands, search_islands
@@ -69,7 +69,12 @@ class SynthesisResult:
 
     @property
     def best(self) -> FrontEntry:
-        """The entry of least cost among those that end at the goal from most starts, or from hardly fewer (TIE)."""
+        """The entry of least cost among those that end at the goal from most starts, or from hardly fewer (TIE).
+
+        Raises LawError if no law has a finite cost.
+        """
+        if not self.front:
+            raise LawError(f"no law with a finite cost was found in {self.evaluations} evaluations")
         most = max(entry.reached for entry in self.front)
         return min(
             (entry for entry in self.front if entry.reached >= most - TIE), key=lambda entry: entry.cost
@@ -79,6 +84,9 @@ class SynthesisResult:
     def law(self) -> Law:
         """The law of the best entry."""
         return self.best.law
+
+    def __str__(self) -> str:
+        return self.table()
 
     def rows(self) -> list[dict[str, Any]]:
         """The front as one dictionary a law, ready for pandas.DataFrame; formulas are joined by '; '."""

@@ -51,6 +51,9 @@ class Tradeoffs:
     evaluations: int
     reason: str
 
+    def __str__(self) -> str:
+        return self.table()
+
     def rows(self) -> list[dict[str, Any]]:
         """The front as one dictionary a law, ready for pandas.DataFrame."""
         return [

@@ -129,6 +129,10 @@ def test_formulas_read_as_written():
     )
 
 
+def test_a_law_prints_as_its_formulas():
+    assert str(robot_law()).splitlines() == list(robot_law().formulas())
+
+
 def test_complexity_counts_the_instructions_of_the_program():
     law = robot_law()
     assert law.complexity == len(law.program.code) == 16

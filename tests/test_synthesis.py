@@ -10,14 +10,14 @@ from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.epochs import Epochs
-from gpsynth.errors import OptimizerError, ProblemError
+from gpsynth.errors import LawError, OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.islands import Islands
 from gpsynth.objective import costs_of
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import synthesize
+from gpsynth.synthesis import SynthesisResult, synthesize
 from gpsynth.variational_ga import VariationalGA
 
 PLANT = Plant(
@@ -105,6 +105,13 @@ def test_the_front_is_a_table_a_file_and_a_picture(tmp_path) -> None:
     assert [row["complexity"] for row in result.rows()] == [entry.complexity for entry in result.front]
     axes = result.plot(ax=Figure().add_subplot())
     assert axes.lines[1].get_ydata().tolist() == [entry.cost for entry in result.front]
+
+
+def test_a_front_without_laws_is_a_sentence_when_its_law_is_wanted() -> None:
+    nothing = SynthesisResult((), 700, (), "budget spent")
+    with pytest.raises(LawError, match="no law with a finite cost was found in 700 evaluations"):
+        nothing.law  # noqa: B018 a property that raises
+    assert str(nothing) == nothing.table()
 
 
 def test_threads_do_not_change_the_result() -> None:

@@ -79,7 +79,7 @@ def synthesize(
         threads=threads,
     )
     click.echo(result.table())
-    click.echo(f"the law of least cost, its exports and the front are in {out}")
+    click.echo(f"the best law, its exports and the front are in {out}")
 
 
 @cli.command()

@@ -57,6 +57,9 @@ class RegressionResult:
         tuple[int, str, float], ...
     ]  # evaluations, what found it, error of that target; at each progress
 
+    def __str__(self) -> str:
+        return self.table()
+
     @property
     def best(self) -> Formula:
         """The chosen formula."""

@@ -67,6 +67,9 @@ class Robustness:
     draws: int  # different ones among the starts
     confidence: float
 
+    def __str__(self) -> str:
+        return self.table()
+
     def table(self) -> str:
         """The report as text."""
         return "\n".join(self._lines())
