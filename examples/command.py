@@ -9,6 +9,7 @@ import click
 import gpsynth as gs
 from gpsynth.cli import run
 from gpsynth.export import write
+from gpsynth.files import make_folder
 from gpsynth.synthesis import FrontEntry
 
 ENOUGH = 10_000  # evaluations, for islands
@@ -46,6 +47,7 @@ def command(
     )
     def main(folder: Path, seed: int, budget: int, tuning: int) -> None:
         """Find laws from scratch and write the best one's exports to FOLDER."""
+        make_folder(folder)  # what cannot be written is not worth a search
         finding = found(seed, budget, tuning)
         paths = []
         for name, result in finding.results.items():
@@ -61,4 +63,4 @@ def command(
 
 def start(main: click.Command, name: str) -> None:
     """Run an example's command line as a program."""
-    raise SystemExit(run(main, name=name))
+    raise SystemExit(run(main, name=f"python -m examples.{name}"))
