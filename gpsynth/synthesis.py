@@ -168,13 +168,14 @@ def synthesize(
     was found so far. The same seed gives the same result for any number of threads and after any resume. `search` is
     of this encoding; `islands` merge, so they take a StructureSearch only.
 
-    Raises ProblemError if the encoding's inputs and outputs are not the problem's features and controls, EncodingError
-    or FormulaError if a guess is no formula of the encoding, FileError if the folder's checkpoint is of another run.
+    Raises ProblemError if the encoding's inputs and outputs are not features and controls of all problems,
+    OptimizerError if `search` is of another encoding, EncodingError or FormulaError if a guess is no formula of the
+    encoding, FileError if the folder's checkpoint is of another run.
     """
     check_encoding(problem, encoding)
     check_search(seed, budget, threads, callback)
     check_whole("tuning", tuning, 0)
-    _check_parts(search, islands, rough, tuned, trials)
+    _check_parts(encoding, search, islands, rough, tuned, trials)
     shape = None if islands is None else (islands, budget)  # shares depend on the budget
     wanted = as_objective(objective)
     strategy: Any = search or StructureSearch(encoding)
@@ -215,15 +216,23 @@ def synthesize(
     return SynthesisResult(_front(entries), found.evaluations, found.history, reason)
 
 
-def check_encoding(problem: Problem, encoding: Encoding[Any]) -> None:
+def check_encoding(problem: Problem, encoding: Encoding[Any], name: str = "problem") -> None:
     """Raises ProblemError unless the encoding maps the problem's features to its controls."""
-    check_kind("problem", problem, Problem)
+    check_kind(name, problem, Problem)
     check_kind("encoding", encoding, Encoding)
     features, controls = problem.features.names, problem.plant.control_names
     if encoding.inputs != features or encoding.outputs != controls:
         raise ProblemError(
-            f"the encoding maps {encoding.inputs} to {encoding.outputs}; the problem has features {features} "
+            f"the encoding maps {encoding.inputs} to {encoding.outputs}; the {name} has features {features} "
             f"and controls {controls}"
+        )
+
+
+def check_same(encoding: Encoding[Any], searched: Encoding[Any]) -> None:
+    """Raises OptimizerError unless a search looks for the formulas of the encoding."""
+    if searched != encoding:
+        raise OptimizerError(
+            f"search is of another encoding, a {type(searched).__name__}, than the {type(encoding).__name__} given"
         )
 
 
@@ -235,8 +244,13 @@ def check_search(seed: int, budget: int, threads: int, callback: object) -> None
     check_function("callback", callback, optional=True)
 
 
-def _check_parts(search: object, islands: object, rough: object, tuned: object, trials: object) -> None:
+def _check_parts(
+    encoding: Encoding[Any], search: object, islands: object, rough: object, tuned: object, trials: object
+) -> None:
     check_kind("search", search, StructureSearch, Epochs, VariationalGA, optional=True)
+    inner = search.search if isinstance(search, Epochs) else search
+    if isinstance(inner, StructureSearch | VariationalGA):
+        check_same(encoding, inner.encoding)
     check_kind("islands", islands, Islands, optional=True)
     if islands is not None and not isinstance(search, StructureSearch | None):
         raise OptimizerError(
@@ -245,8 +259,10 @@ def _check_parts(search: object, islands: object, rough: object, tuned: object, 
     check_kind("rough", rough, Problem, optional=True)
     check_kind("tuned", tuned, Problem, optional=True)
     check_kind("trials", trials, list, tuple)
-    for trial in cast(Sequence[object], trials):
-        check_kind("a trial", trial, Problem)
+    others = {f"problem of trial {number}": trial for number, trial in enumerate(cast(Sequence[Any], trials))}
+    for name, other in {"rough problem": rough, "tuned problem": tuned, **others}.items():
+        if other is not None or name in others:
+            check_encoding(cast(Problem, other), encoding, name)
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,7 @@ from gpsynth.problem import Problem
 from gpsynth.program import Program
 from gpsynth.runs import checkpoint_in, run_search
 from gpsynth.structure_search import Candidate
-from gpsynth.synthesis import check_encoding, check_search
+from gpsynth.synthesis import check_encoding, check_same, check_search
 from gpsynth.tables import write_csv
 
 if TYPE_CHECKING:
@@ -116,6 +116,8 @@ def synthesize_tradeoffs(
     check_search(seed, budget, threads, callback)
     check_kind("objectives, functions by name,", objectives, Mapping)
     check_kind("search", search, ParetoSearch, optional=True)
+    if search is not None:
+        check_same(encoding, search.encoding)
     if len(objectives) < 2:
         raise ProblemError(f"expected two objectives or more, got {', '.join(objectives) or 'none'}")
     wanted = {name: as_objective(given) for name, given in objectives.items()}

@@ -1,6 +1,7 @@
 """Stage 1 on a plant whose answer is known: the double integrator."""
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -125,3 +126,25 @@ def test_encoding_must_fit_the_problem() -> None:
     wrong = TreeEncoding(("place",), ("force",), ("add",))
     with pytest.raises(ProblemError, match=r"the problem has features \('error_place', 'error_speed'\)"):
         synthesize(problem, wrong, budget=100)
+    fitting, other = encoding(problem), replace(problem, features=lambda x, target: {"place": x.place})
+    for name, settings in {
+        "rough problem": {"rough": other},
+        "tuned problem": {"tuned": other},
+        "problem of trial 1": {"trials": [problem, other]},
+    }.items():
+        with pytest.raises(ProblemError, match=rf"the {name} has features \('place',\)"):
+            synthesize(problem, fitting, budget=450, **settings)
+
+
+def test_a_search_of_another_encoding_is_an_error() -> None:
+    problem = quadratic()
+    names = problem.features.names
+    varied = VariationalEncoding(names, ("force",), space=ParameterSpace(2))
+    for search in (StructureSearch(varied), Epochs(StructureSearch(varied)), VariationalGA(varied)):
+        with pytest.raises(
+            OptimizerError, match="search is of another encoding, a VariationalEncoding, than the"
+        ):
+            synthesize(problem, encoding(problem), budget=450, search=search)
+    again = VariationalEncoding(names, ("force",), space=ParameterSpace(2))
+    few = StructureSearch(varied, population=10, offspring=10)
+    assert synthesize(problem, again, budget=30, tuning=0, search=few).front

@@ -1,4 +1,5 @@
 import csv
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -85,6 +86,9 @@ def test_the_front_is_a_table_a_file_and_a_picture(tmp_path):
 def test_wrong_settings_are_named():
     with pytest.raises(ProblemError, match="expected two objectives or more, got time"):
         synthesize_tradeoffs(PROBLEM, ENCODING, {"time": lambda rollouts: rollouts.end})
+    other = replace(ENCODING, max_size=5)
+    with pytest.raises(OptimizerError, match="search is of another encoding"):
+        synthesize_tradeoffs(PROBLEM, ENCODING, OBJECTIVES, search=ParetoSearch(other))
     with pytest.raises(OptimizerError, match="population must be at least 4"):
         ParetoSearch(ENCODING, population=2)
     with pytest.raises(OptimizerError, match="are shares of 1"):
