@@ -311,10 +311,11 @@ def _check_content(problem: Problem, law: Law) -> None:
             f"the law is for controls in {_limits(law.plant)}, the problem for {_limits(problem.plant)}; "
             "adapt the law by law.with_limits(problem.plant.lower, problem.plant.upper)"
         )
-    raise ProblemError(
-        f"the law is for the plant {law.plant.name!r}, which is not the problem's {problem.plant.name!r}; "
-        "give the problem plant=law.plant"
+    given, wanted = law.plant.name, problem.plant.name
+    other = (
+        f"is not the problem's {wanted!r}" if given != wanted else "differs from the problem's of that name"
     )
+    raise ProblemError(f"the law is for the plant {given!r}, which {other}; give the problem plant=law.plant")
 
 
 def numbers(what: str, values: npt.ArrayLike) -> Floats:

@@ -218,6 +218,11 @@ def test_a_law_for_another_plant_or_other_features_is_refused() -> None:
     renamed = replace(law, plant=Plant.from_dict({**problem.plant.to_dict(), "name": "other"}))
     with pytest.raises(ProblemError, match="the plant 'other', which is not the problem's 'unicycle'"):
         evaluator.of_schedules(renamed, points, dwell)
+    same_name = replace(law, plant=Plant.from_dict({**problem.plant.to_dict(), "angles": []}))
+    with pytest.raises(
+        ProblemError, match="the plant 'unicycle', which differs from the problem's of that name"
+    ):
+        evaluator.of_schedules(same_name, points, dwell)
     doubled = Problem(
         problem.plant,
         problem.starts,
