@@ -21,7 +21,7 @@ from tests.bench.paper_numbers import bounds, facts
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
-PAGES = sorted(DOCS.rglob("*.md"))
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
 DECISIONS = sorted((DOCS / "decisions").glob("[0-9]*.md"))
 PLACE = re.compile(r"`((?:[\w.]+/)+[\w.]+)(?::([\w.]+))?`")
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -48,6 +48,16 @@ def own_names(node: ast.stmt) -> set[str]:
         return {node.name}
     targets = getattr(node, "targets", [getattr(node, "target", None)])
     return {target.id for target in targets if isinstance(target, ast.Name)}
+
+
+@pytest.mark.slow
+def test_the_readme_runs_as_printed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    place: dict[str, object] = {}
+    for block in blocks("../README.md", "python"):
+        exec(compile(block, "README.md", "exec"), place)
+    assert place["result"].best.reached == 1.0
+    assert (tmp_path / "law.json").exists()
 
 
 @pytest.mark.slow
@@ -153,6 +163,9 @@ def test_named_commands_exist(page):
     makefile = (ROOT / "Makefile").read_text("utf-8")
     for target in re.findall(r"(?:`|^ {4}|^)make (\w+)", text, re.MULTILINE):
         assert re.search(rf"^{target}:", makefile, re.MULTILINE), f"make {target}"
+    for module in re.findall(r"python -m ((?:applications|docs|examples|tests)(?:\.\w+)*)", text):
+        path = ROOT / module.replace(".", "/")
+        assert path.with_suffix(".py").exists() or (path / "__main__.py").exists(), f"python -m {module}"
     for command in re.findall(r"-m applications\.rosbot (\w+)", text):
         assert command in rosbot.commands
     for command in re.findall(r"(?:`|^ {4}|^)gpsynth (\w+)", text, re.MULTILINE):
