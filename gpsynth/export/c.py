@@ -50,7 +50,8 @@ def to_c(law: Law, name: str = "law", vectors: tuple[Floats, Floats] | None = No
     """Source and header of `void NAME(const double state[N], const double target[N], double control[M])`.
 
     `vectors` are states and targets (V, N) each, on which the self-test (compile with -DNAME_SELF_TEST) compares all
-    bits of the controls with those of the law. Raises LawError if `name` cannot name a C function.
+    bits of the controls with those of the law. Raises LawError if `name` cannot name a C function
+    or `vectors` are something else.
     """
     check_name(name)
     lines = listing(law, Syntax(number=c_number, operation=written))
@@ -65,7 +66,7 @@ def to_c(law: Law, name: str = "law", vectors: tuple[Floats, Floats] | None = No
         functions=used_functions(lines),
         prototype=_prototype(law, name),
         body=indent(_body(law, lines), "    "),
-        self_test=_self_test(law, name, *(vectors or trial_states(law, 32))),
+        self_test=_self_test(law, name, *_checked(trial_states(law, 32) if vectors is None else vectors)),
     )
     header = _HEADER.format(remarks=remarks, guard=f"{name.upper()}_H", prototype=_prototype(law, name))
     return source, header
@@ -119,6 +120,16 @@ def _body(law: Law, lines: Listing) -> str:
             *(f"(void){argument};" for argument in ("state", "target") if f"{argument}[" not in used),
         ]
     )
+
+
+def _checked(vectors: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+    if (
+        not isinstance(vectors, tuple | list)
+        or [np.ndim(part) for part in vectors] != [2, 2]
+        or not len(vectors[0])
+    ):
+        raise LawError("vectors are states and targets, (V, n) each, with V at least 1")
+    return vectors
 
 
 def _self_test(law: Law, name: str, states: Floats, targets: Floats) -> str:

@@ -97,6 +97,14 @@ def test_self_test_takes_the_vectors_it_is_given(tmp_path):
     assert "static const double rows[3][8]" in source
 
 
+@pytest.mark.parametrize(
+    "vectors", [3, (np.zeros((3, 3)),), (np.zeros(3), np.zeros(3)), (np.zeros((0, 3)), np.zeros((0, 3)))]
+)
+def test_vectors_of_another_shape_are_an_error(vectors):
+    with pytest.raises(LawError, match=r"vectors are states and targets, \(V, n\) each, with V at least 1"):
+        to_c(robot_law(), vectors=vectors)
+
+
 @pytest.mark.parametrize("options", ["-ffast-math", "-Ofast", "-mfpmath=387"])
 def test_compiling_without_ieee_arithmetic_is_refused(tmp_path, options):
     source = _write(robot_law(), tmp_path)
