@@ -43,7 +43,7 @@ def grow(
                 uniforms[i, DRAWS * t + 1],
                 uniforms[i, DRAWS * t + 2],
             )
-            can_leaf = open_ <= remaining
+            can_leaf = open_ <= remaining and (open_ == 0 or len(binary) > 0)  # else nobody takes two
             can_unary = (open_ >= 1) & (open_ - 1 <= remaining) & (len(unary) > 0)
             can_binary = (open_ >= 2) & (len(binary) > 0)
             numbers[i, t] = 0.0

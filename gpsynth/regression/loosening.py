@@ -44,6 +44,8 @@ def templates(state: State, library: Library, target: Target) -> None:
     pairs = [("mul", f, g) for k, f in enumerate(factors) for g in factors[:k]]
     rows = state.rows[:FEW_ROWS]
     data = data_of(state.data.inputs[rows], target.values[rows], state.data.weights[rows].copy())
+    if data.total == 0.0:  # on these rows there is nothing to explain
+        return
     free = [
         ("add", ("mul", ONE, loosened(structure)), ZERO)
         for structure in (*singles, *pairs)

@@ -73,6 +73,8 @@ def select(columns: Columns, target: Floats, *, terms: int, width: int) -> list[
         gain = np.where(free > DEPENDENT, overlap * overlap / np.maximum(free, DEPENDENT), 0.0)
         rest = np.einsum("ij,ij->i", residuals, residuals)
         chosen = _best(np.round(np.maximum(rest[:, None] - gain, 0.0), 14), subsets, width)
+        if not chosen:  # every column is in every subset
+            break
         grown = [_grow(columns, residuals[beam], bases[beam], column) for beam, column in chosen]
         residuals = np.stack([new for new, _ in grown])
         bases = [basis for _, basis in grown]

@@ -57,6 +57,13 @@ def test_selected_subsets_leave_what_least_squares_leaves() -> None:
         assert abs(subset.rest - rest(values[list(columns.formula[list(subset.columns)])], target)) < 1e-10
 
 
+def test_fewer_columns_than_terms_are_all_selected() -> None:
+    rng = np.random.default_rng(6)
+    columns, target = columns_of(rng.normal(size=(2, 25))), rng.normal(size=25)
+    sizes = [len(subset.columns) for subset in select(columns, target, terms=6, width=5)]
+    assert sizes == [1, 1, 2]
+
+
 def test_columns_that_differ_by_shift_and_scale_are_one() -> None:
     values = np.random.default_rng(5).normal(size=(3, 20))
     more = np.concatenate((values, 2.0 - 3.0 * values, np.ones((1, 20))))
