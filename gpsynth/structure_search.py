@@ -22,6 +22,8 @@ from gpsynth.program import Program
 
 G = TypeVar("G")
 
+TRIES = 100  # least number of formulas drawn for a generation
+
 
 @dataclass(frozen=True, eq=False)
 class Candidate(Generic[G]):
@@ -167,7 +169,7 @@ class StructureSearch(Generic[G]):
         return (state.population[0], state.population[0].cost) if state.population else (None, inf)
 
     def stop(self, state: SearchState[G]) -> str:
-        """Formulas never run out."""
+        """Whether formulas run out shows when they are asked for."""
         return ""
 
     def _state(
@@ -179,12 +181,12 @@ class StructureSearch(Generic[G]):
         return SearchState(survivors, pareto((*front, *distinct)), generation=generation)
 
     def _new(self, state: SearchState[G], rng: np.random.Generator) -> list[tuple[G, Program, int]]:
-        """Offspring whose programs are not in the population."""
+        """Offspring whose programs are not in the population; a small grammar may have no more."""
         wanted = self.offspring if state.population else self.population
         known = {individual.program for individual in state.population}
         found: list[tuple[G, Program, int]] = []
         waiting = list(self.seeds) if not state.population else []
-        for _ in range(4 * wanted):
+        for _ in range(max(4 * wanted, TRIES)):
             genome, born = (waiting.pop(), state.generation) if waiting else self._child(state, rng)
             program = self.encoding.decode(genome)
             if program not in known:

@@ -81,6 +81,19 @@ def test_same_seed_same_search() -> None:
     assert first.x.program == second.x.program
 
 
+def test_a_grammar_without_further_formulas_ends_the_search() -> None:
+    encoding = TreeEncoding(("a", "b"), ("y",), ("neg",), ParameterSpace(0, -1.0, 1.0), max_size=2)
+    result = minimize(errors(lambda a, b: a - 3.0), StructureSearch(encoding), seed=1, budget=10_000)
+    assert result.reason == "nothing new to try"
+    assert result.evaluations == 4  # a, b, -a, -b
+    assert len(result.x.program.code) == 0
+
+
+def test_one_offspring_a_generation_is_new_as_long_as_there_are_new_ones() -> None:
+    search = StructureSearch(ENCODING, population=4, offspring=1, tuned=0)
+    assert minimize(errors(lambda a, b: a * b), search, seed=2, budget=300).evaluations == 300
+
+
 def test_settings_below_one_are_an_error() -> None:
     with pytest.raises(OptimizerError, match="offspring must be an integer of at least 1, not 0"):
         StructureSearch(ENCODING, offspring=0)

@@ -78,6 +78,9 @@ def minimize(
     with bar(budget, progress) as show:
         while not (reason := _reason(optimizer, now, target)):
             candidates, waiting = optimizer.ask(now.state, stream(seed, *path, now.generation + 1))
+            if len(candidates) == 0:
+                reason = "nothing new to try"
+                break
             if now.evaluations + len(candidates) > budget:
                 reason = "budget spent"
                 break

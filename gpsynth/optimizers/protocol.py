@@ -24,7 +24,7 @@ class Search(Protocol[S, Batch, Candidate_co]):
         ...
 
     def ask(self, state: S, rng: np.random.Generator) -> tuple[Batch, S]:
-        """The next candidates to evaluate, and the state that waits for their costs."""
+        """The next candidates to evaluate, and the state that waits for their costs; none end the run."""
         ...
 
     def tell(self, state: S, candidates: Batch, costs: Floats) -> S:
