@@ -31,7 +31,7 @@ def numbers(name: str, values: npt.ArrayLike) -> Floats:
 def shaped(name: str, values: npt.ArrayLike, shape: tuple[int, ...], *, finite: bool = True) -> Floats:
     """A read-only copy of this shape, of which a -1 stands for any length; raises ProblemError if it has another."""
     array = numbers(name, values)
-    if array.size == 0 and shape[0] == -1 and -1 not in shape[1:]:
+    if array.size == 0 and shape[:1] == (-1,) and -1 not in shape[1:]:
         array = array.reshape(0, *shape[1:])
     if array.ndim != len(shape) or any(
         want not in (-1, has) for want, has in zip(shape, array.shape, strict=True)

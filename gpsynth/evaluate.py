@@ -92,6 +92,7 @@ class Evaluator:
         """
         problem = self.problem
         check_kind("program", program, Program)
+        check_number("the bound", bound)
         if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
             raise ProblemError(
                 f"the program computes {_listed(program.names)} from {_listed(program.inputs)}; expected "
@@ -103,7 +104,7 @@ class Evaluator:
                 f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
             )
         bounded = len(vectors) == 1 and problem.costs_nonnegative
-        total = bound * len(problem.starts) * (1.0 + ROUNDING) if bounded else np.inf
+        total = float(bound) * len(problem.starts) * (1.0 + ROUNDING) if bounded else np.inf
         clock = self.until(problem.horizon, bound=total)
         return self._roll(program, vectors, _NO_PLAN, clock, len(vectors), paths=paths)
 
@@ -185,12 +186,14 @@ class Evaluator:
         if obstacles is None:
             nowhere = np.empty(0, dtype=np.int32)
             everywhere = np.array([-np.inf, np.inf, -np.inf, np.inf])
-            return sealed(World(nowhere, np.empty((0, 5)), everywhere, self.margin))
+            return sealed(World(nowhere, np.empty((0, 5)), everywhere, float(self.margin)))
         states = self.problem.plant.state_names
         circles = np.array(obstacles.circles, dtype=np.float64).reshape(-1, 5)
         circles[:, 4] += obstacles.radius
         position = np.array([states.index(name) for name in obstacles.position], dtype=np.int32)
-        return sealed(World(position, circles, np.array(obstacles.bounds, dtype=np.float64), self.margin))
+        return sealed(
+            World(position, circles, np.array(obstacles.bounds, dtype=np.float64), float(self.margin))
+        )
 
     @cached_property
     def frame(self) -> Frame:
@@ -238,7 +241,7 @@ class Evaluator:
         check_number("the reach", reach)
         if not reach >= 0.0:
             raise ProblemError(f"the reach must be at least 0, got {reach}")
-        return self.clock._replace(periods=periods_of(self.problem, horizon), reach=reach, bound=bound)
+        return self.clock._replace(periods=periods_of(self.problem, horizon), reach=float(reach), bound=bound)
 
     @cached_property
     def goals(self) -> Floats:

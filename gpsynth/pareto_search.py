@@ -12,6 +12,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from gpsynth.arrays import Floats, Ints
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.nsga2 import crowded_order
@@ -63,10 +64,12 @@ class ParetoSearch(Generic[G]):
     size_counts: bool = True  # the number of instructions is one more cost
 
     def __post_init__(self) -> None:
-        if self.population < 4:
-            raise OptimizerError(f"population must be at least 4, not {self.population}")
+        check_kind("encoding", self.encoding, Encoding, error=OptimizerError)
+        check_whole("population", self.population, 4, OptimizerError)
+        for name in ("crossover", "moved", "fresh"):
+            check_number(name, getattr(self, name), OptimizerError)
         shares = (self.crossover, self.moved, self.fresh)
-        if min(shares) < 0.0 or sum(shares) > 1.0:
+        if not (min(shares) >= 0.0 and sum(shares) <= 1.0):
             raise OptimizerError(f"crossover, moved and fresh are shares of 1, not {shares}")
 
     def init(self, rng: np.random.Generator) -> ParetoState[G]:

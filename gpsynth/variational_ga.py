@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 
 from gpsynth.arrays import Floats, Ints, frozen
-from gpsynth.checks import check_kind, check_whole
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.encodings.variational import VariationalEncoding, VariationalGenome
 from gpsynth.errors import OptimizerError
 from gpsynth.optimizers.domination import dominates, domination_ranks, nearest_to_utopia
@@ -68,6 +68,7 @@ class VariationalGA:
         for name, value in least.items():
             check_whole(name, getattr(self, name), value, OptimizerError)
         for name in ("attraction", "mutation"):
+            check_number(name, getattr(self, name), OptimizerError)
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise OptimizerError(f"{name} must lie in [0, 1], not {getattr(self, name)}")
 

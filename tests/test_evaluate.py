@@ -185,6 +185,20 @@ def test_a_horizon_that_makes_no_sense_is_refused(horizon: float) -> None:
         Evaluator(problem).of_schedules(law, np.zeros((1, 1, 3)), np.ones((1, 1)), horizon)
 
 
+def test_whole_numbers_are_numbers() -> None:
+    problem = _problem()
+    law = _laws(problem, np.array([[0.7, 0.4]]))[0]
+    points, dwell = np.ones((1, 1, 3)), np.ones((1, 1))
+    whole, real = (
+        Evaluator(problem, margin=kind(1)).of_schedules(law, points, dwell, reach=kind(1)).depth.tolist()
+        for kind in (int, float)
+    )
+    assert whole == real
+    unbounded = Evaluator(problem).of_program(law.program, law.parameters)
+    bounded = Evaluator(problem).of_program(law.program, law.parameters, bound=np.float32(99.0))
+    assert bounded.cost.tolist() == unbounded.cost.tolist()
+
+
 @pytest.mark.parametrize("reach", [np.nan, -1.0])
 def test_a_reach_that_makes_no_sense_is_refused(reach: float) -> None:
     problem = _problem()

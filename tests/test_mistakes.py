@@ -5,6 +5,7 @@ import pytest
 
 import gpsynth as gs
 from gpsynth import export
+from gpsynth.pareto_search import ParetoSearch
 
 PLANT = gs.Plant(
     lambda x, u, p: (x.v, u.u / p.mass),
@@ -54,6 +55,12 @@ MISTAKES = {
     "tradeoffs: a list": (lambda: tradeoffs([len, len]), "objectives, functions by name, must be a Mapping"),
     "tradeoffs: threads": (lambda: tradeoffs(threads=0), "threads must be an integer of at least 1, not 0"),
     "tradeoffs: seed": (lambda: tradeoffs(seed=0.5), "seed must be an integer"),
+    "tradeoffs: population": (lambda: ParetoSearch(ENCODING, population="9"), "population must be an integer of at"),
+    "tradeoffs: a share": (lambda: ParetoSearch(ENCODING, moved="0.1"), "moved must be a number, got '0.1'"),
+    "tradeoffs: NaN": (lambda: ParetoSearch(ENCODING, fresh=np.nan), "crossover, moved and fresh are shares of 1"),
+    "regress: no target": (lambda: gs.regress(X, []), "inputs have 4 rows and the target has 0"),
+    "problem: no horizon": (lambda: gs.Problem(PLANT, [[1, 0]], [0, 0], tolerance=1, horizon=[]), "shape (0,)"),
+    "a bound": (lambda: gs.Evaluator(PROBLEM).of_program(PROGRAM, [], bound="1"), "the bound must be a number"),
     "refit: swapped": (lambda: gs.refit(LAW, PROBLEM), "problem must be a Problem, got a Law"),
     "refit: budget": (lambda: gs.refit(PROBLEM, LAW, budget=0), "budget must be an integer of at least 1, not 0"),
     "plan: swapped": (lambda: gs.plan(LAW, PROBLEM), "problem must be a Problem, got a Law"),

@@ -89,7 +89,7 @@ def test_wrong_settings_are_named():
     other = replace(ENCODING, max_size=5)
     with pytest.raises(OptimizerError, match="search is of another encoding"):
         synthesize_tradeoffs(PROBLEM, ENCODING, OBJECTIVES, search=ParetoSearch(other))
-    with pytest.raises(OptimizerError, match="population must be at least 4"):
+    with pytest.raises(OptimizerError, match="population must be an integer of at least 4"):
         ParetoSearch(ENCODING, population=2)
     with pytest.raises(OptimizerError, match="are shares of 1"):
         ParetoSearch(ENCODING, crossover=0.9, moved=0.9)

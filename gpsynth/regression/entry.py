@@ -161,7 +161,7 @@ def _targets(values: npt.ArrayLike) -> Floats:
     columns = _numbers("target", values)
     if columns.ndim not in (1, 2) or 0 in columns.shape[1:]:
         raise RegressionError(f"target has shape {columns.shape}; expected (n,) or (n, k), k at least 1")
-    return columns.reshape(len(columns), -1)
+    return columns if columns.ndim == 2 else columns[:, np.newaxis]
 
 
 def _vector(what: str, values: npt.ArrayLike) -> Floats:
