@@ -47,6 +47,8 @@ def _monomials(inputs: Floats, most: int) -> tuple[list[Expression], Floats]:
 
 def _rest(terms: Floats, values: Floats) -> float:
     """What the best sum of the terms leaves of the squares of values (n,), as a share; 0 if all values are equal."""
+    if not np.isfinite(terms).all():  # a high power of a large number
+        return np.inf
     factors, constant = linear.coefficients(terms, values)
     rest, spread = values - factors @ terms - constant, values - values.mean()
     return float(rest @ rest) / (float(spread @ spread) or np.inf)

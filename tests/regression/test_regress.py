@@ -125,8 +125,9 @@ def test_what_does_not_fit_is_one_sentence(settings, message) -> None:
         (np.array([[1.0, 2.0], [2.0, 1.0]]), np.array([3.0, 5.0])),
         (np.repeat([[1.0, 2.0], [2.0, 1.0]], 5, axis=0), np.repeat([3.0, 5.0], 5)),
         (np.array([[1.0, 2.0], [2.0, 1.0], [3.0, 7.0]]) * 1e45, np.array([3.0, 5.0, 7.0]) * 1e45),
+        (np.random.default_rng(2).normal(size=(300, 2)) * 1e40, np.random.default_rng(3).normal(size=300)),
     ],
-    ids=["constant columns", "two rows", "two different rows", "huge numbers"],
+    ids=["constant columns", "two rows", "two different rows", "huge numbers", "huge powers"],
 )
 def test_data_that_say_little_give_a_formula_all_the_same(inputs, target):
     result = gpsynth.regress(inputs, target, evaluations=20_000)
