@@ -18,7 +18,6 @@ from gpsynth.operations import CODES, OPERATIONS, Operation
 FORMAT = "gpsynth-program/1"
 MOST_INSTRUCTIONS = 10_000
 UNUSED = -1
-ARITIES = frozen(np.array([operation.arity for operation in OPERATIONS], dtype=np.int32))
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 
 Value = TypeVar("Value")
@@ -101,10 +100,16 @@ class Program:
         return hashlib.sha256(json.dumps(self._content(), sort_keys=True).encode()).hexdigest()
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Program) and self.hash == other.hash
+        return isinstance(other, Program) and self._key == other._key
 
     def __hash__(self) -> int:
-        return hash(self.hash)
+        return hash(self._key)
+
+    @cached_property
+    def _key(self) -> tuple[tuple[str, ...] | bytes, ...]:
+        """The content as what Python compares and hashes at once: searches ask for it all the time."""
+        numbers = (self.constants.tobytes(), self.code.tobytes(), self.outputs.tobytes())
+        return self.inputs, self.parameters, self.names, *numbers
 
     def __call__(self, inputs: Floats, parameters: Floats | Sequence[float] = ()) -> Floats:
         """Outputs (N, m) of inputs (N, n), computed by the lane machine.
@@ -232,16 +237,14 @@ def _check(program: Program) -> None:
         raise ProgramError(f"the outputs need different names, not {', '.join(program.names)}")
     if len(program.code) > MOST_INSTRUCTIONS:
         raise ProgramError(f"{len(program.code)} instructions; at most {MOST_INSTRUCTIONS} are allowed")
-    operations, operands = program.code[:, 0], program.code[:, 1:]
-    if np.any((operations < 0) | (operations >= len(OPERATIONS))):
-        raise ProgramError("the code names an operation that is not in the table")
     known = len(program.inputs) + len(program.parameters) + len(program.constants)
-    computed = known + np.arange(len(operations))[:, np.newaxis]
-    is_used = np.arange(3) < ARITIES[operations][:, np.newaxis]
-    fits = np.where(is_used, (operands >= 0) & (operands < computed), operands == UNUSED)
-    if not np.all(fits):
-        index = int(np.argmin(np.all(fits, axis=1)))
-        name = OPERATIONS[operations[index]].name
-        raise ProgramError(f"instruction {index} ({name}) uses a value that is not computed before it")
-    if not np.all((program.outputs >= 0) & (program.outputs < known + len(operations))):
+    for index, (code, *operands) in enumerate(program.code.tolist()):
+        if not 0 <= code < len(OPERATIONS):
+            raise ProgramError("the code names an operation that is not in the table")
+        arity = OPERATIONS[code].arity
+        used, unused = operands[:arity], operands[arity:]
+        if not all(0 <= operand < known + index for operand in used) or unused != [UNUSED] * len(unused):
+            name = OPERATIONS[code].name
+            raise ProgramError(f"instruction {index} ({name}) uses a value that is not computed before it")
+    if not all(0 <= output < known + len(program.code) for output in program.outputs.tolist()):
         raise ProgramError("an output names a value that does not exist")

@@ -14,7 +14,9 @@ from gpsynth.errors import EncodingError
 from gpsynth.operations import operation
 
 Node = TypeVar("Node")
-Versions = dict[int, tuple[Node, ...]]  # of a subtree, by what changes its sign: one bit a symmetry
+# A version of a subtree: how many nodes it has, its root, and the versions that are the root's operands.
+Version = tuple[int, Node, tuple["Version[Node]", ...]]
+Versions = dict[int, Version[Node]]  # by what changes its sign: one bit a symmetry
 
 # A function that is 1 at 0, as sgn and protected quotients are, is not odd there, and there may be everywhere: x - x.
 ALIKE = frozenset({"add", "sub"})  # f(-a, -b) = -f(a, b)
@@ -84,13 +86,15 @@ class SymmetryRules:
         if self._keeps([meaning for _, meaning in tree], output):
             return list(tree)
         stack: list[Versions[tuple[Node, str | int | None]]] = []
-        for node, meaning in reversed(tree):
+        for item in reversed(tree):
+            meaning = item[1]
             if isinstance(meaning, str):
                 operands = [stack.pop() for _ in range(operation(meaning).arity)]
-                stack.append(_applied((node, meaning), meaning, operands))
+                stack.append(_applied(item, meaning, operands))
             else:
-                stack.append({0 if meaning is None else self.inputs[meaning]: ((node, meaning),)})
-        return list(stack[0].get(self.outputs[output], ()))
+                stack.append({0 if meaning is None else self.inputs[meaning]: (1, item, ())})
+        largest = stack[0].get(self.outputs[output])
+        return [] if largest is None else list(_nodes(largest))
 
     def _keeps(self, tree: Sequence[str | int | None], output: int) -> bool:
         """Whether the whole tree has the signs of an output."""
@@ -112,10 +116,22 @@ def _applied(node: Node, name: str, operands: Sequence[Versions[Node]]) -> Versi
     for chosen in product(*(operand.items() for operand in operands)):
         signs = _signs(name, [signs for signs, _ in chosen])
         if signs is not None:
-            _keep(found, signs, (node, *(inner for _, nodes in chosen for inner in nodes)))
-    for signs, nodes in _items(operands):
-        _keep(found, signs, nodes)
+            size = 1 + sum(version[0] for _, version in chosen)
+            if signs not in found or size > found[signs][0]:
+                found[signs] = (size, node, tuple(version for _, version in chosen))
+    for operand in operands:
+        for signs, version in operand.items():
+            if signs not in found or version[0] > found[signs][0]:
+                found[signs] = version
     return found
+
+
+def _nodes(version: Version[Node]) -> Iterator[Node]:
+    """The nodes of a version in prefix order."""
+    _, root, operands = version
+    yield root
+    for operand in operands:
+        yield from _nodes(operand)
 
 
 def _signs(name: str, operands: Sequence[int]) -> int | None:
@@ -131,13 +147,3 @@ def _signs(name: str, operands: Sequence[int]) -> int | None:
     if name == "where":
         return operands[1] if operands[0] == 0 and operands[1] == operands[2] else None
     return None if any(operands) else 0
-
-
-def _items(operands: Sequence[Versions[Node]]) -> Iterator[tuple[int, tuple[Node, ...]]]:
-    for operand in operands:
-        yield from operand.items()
-
-
-def _keep(found: Versions[Node], signs: int, nodes: tuple[Node, ...]) -> None:
-    if len(nodes) > len(found.get(signs, ())):
-        found[signs] = nodes

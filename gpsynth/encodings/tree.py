@@ -289,8 +289,12 @@ class TreeEncoding:
     ) -> TreeGenome:
         trees[index] = self._obeying(trees[index], index)
         child = self._read(trees, rng)
-        fits = self._fits(trees[index]) and len(child.values) <= self.space.count
-        return child if fits and self._lawful(child, index) else parent
+        if not self._fits(trees[index]) or len(child.values) > self.space.count:
+            return parent
+        wanted = sum(isinstance(node, gp.Terminal) and self._meaning(node) is None for node in trees[index])
+        # an input in place of a number that found no room may break what the tree kept to
+        is_obeying = child.trees[index].count(len(self.inputs)) == wanted or self._lawful(child, index)
+        return child if is_obeying else parent
 
     def _read(self, trees: list[gp.PrimitiveTree], rng: np.random.Generator) -> TreeGenome:
         """The genome of DEAP's trees; new numbers are drawn, or become inputs where there are enough of them."""
