@@ -40,7 +40,6 @@ G = TypeVar("G")
 
 SEARCH, TUNING = 1, 2  # stages of the random streams
 MERIT = 1e-3  # share of the cost that a larger law of the front must save
-TIE = 0.005  # of the share of starts that end at the goal: what the starts drawn can decide as well
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,16 +68,14 @@ class SynthesisResult:
 
     @property
     def best(self) -> FrontEntry:
-        """The entry of least cost among those that end at the goal from most starts, or from hardly fewer (TIE).
+        """The entry of least cost among those that end at the goal from most starts.
 
         Raises LawError if no law has a finite cost.
         """
         if not self.front:
             raise LawError(f"no law with a finite cost was found in {self.evaluations} evaluations")
         most = max(entry.reached for entry in self.front)
-        return min(
-            (entry for entry in self.front if entry.reached >= most - TIE), key=lambda entry: entry.cost
-        )
+        return min((entry for entry in self.front if entry.reached == most), key=lambda entry: entry.cost)
 
     @property
     def law(self) -> Law:

@@ -6,10 +6,17 @@ import numpy as np
 import pytest
 
 from applications.rosbot.model import DELAY, dynamic_unicycle
-from applications.rosbot.stabilizer import default_law, poses, stabilization, synthesize_stabilizer
+from applications.rosbot.stabilizer import (
+    default_law,
+    poses,
+    stabilization,
+    synthesize_stabilizer,
+    training_poses,
+)
 from gpsynth.draws import Draws, crossed, random_draws
 from gpsynth.errors import EncodingError
 from gpsynth.evaluate import Evaluator
+from gpsynth.formula_text import read_formulas
 from gpsynth.law import Law
 from gpsynth.simulation import simulate
 
@@ -88,6 +95,35 @@ def test_a_law_found_from_scratch_reaches_the_goal() -> None:
     for period in (0.05, 0.005):
         assert np.isfinite(arrivals(result.law, 200, period=period)).mean() >= 0.9
     assert result.front[0].complexity < result.best.complexity
+
+
+def _seam(count: int) -> np.ndarray:
+    """Training starts beside the goal, turned half round."""
+    return training_poses(np.random.default_rng(5), 8 * count)[7::8]
+
+
+def _lost(law: Law, starts: np.ndarray, period: float) -> float:
+    """The share of starts from which 30 s are not enough."""
+    problem = stabilization(starts, period=period)
+    rolled = Evaluator(problem, threads=2).of_program(law.program, law.parameters[np.newaxis])
+    return float(np.mean(np.isinf(rolled.arrival)))
+
+
+@pytest.mark.parametrize("period", [0.1, 0.05, 0.005])
+def test_the_shipped_law_leaves_the_places_where_its_features_jump(period: float) -> None:
+    assert _lost(default_law(), _seam(300), period) == 0.0
+
+
+def test_a_law_that_goes_to_and_fro_beside_the_goal_loses_training_starts_there() -> None:
+    """It arrives from 999 of 1000 other starts."""
+    formulas = (
+        "v = 3.0041 * (error_x + sin(2.29583 * atan(error_y * tanh(-4.98976 * error_theta))))\n"
+        "omega = -0.791574 * sin(error_theta) + 3 * bearing + 56.2695 * heading"
+    )
+    program = read_formulas(formulas, default_law().features.names, ("v", "omega"))
+    law = replace(default_law(), program=program, parameters=np.empty(0))
+    assert _lost(law, poses(np.random.default_rng(20_261_122), 1000, 3.0), 0.05) <= 0.001
+    assert _lost(law, _seam(300), 0.1) >= 0.05
 
 
 def test_an_unknown_encoding_is_named() -> None:
