@@ -50,12 +50,18 @@ def own_names(node: ast.stmt) -> set[str]:
     return {target.id for target in targets if isinstance(target, ast.Name)}
 
 
+def run_as_printed(page):
+    """The names that all Python blocks of a page, run in their order, leave behind."""
+    place: dict[str, object] = {}
+    for block in blocks(page, "python"):
+        exec(compile(block, page, "exec"), place)
+    return place
+
+
 @pytest.mark.slow
 def test_the_readme_runs_as_printed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    place: dict[str, object] = {}
-    for block in blocks("../README.md", "python"):
-        exec(compile(block, "README.md", "exec"), place)
+    place = run_as_printed("../README.md")
     assert place["result"].best.reached == 1.0
     assert (tmp_path / "law.json").exists()
 
@@ -63,9 +69,7 @@ def test_the_readme_runs_as_printed(tmp_path, monkeypatch):
 @pytest.mark.slow
 def test_getting_started_runs_as_printed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    place: dict[str, object] = {}
-    for block in blocks("getting_started.md", "python"):
-        exec(compile(block, "getting_started.md", "exec"), place)
+    run_as_printed("getting_started.md")
     assert {path.name for path in (tmp_path / "slider").iterdir()} >= {
         "law.c",
         "law.h",
@@ -83,23 +87,17 @@ def test_getting_started_runs_as_printed(tmp_path, monkeypatch):
 @pytest.mark.slow
 def test_the_examples_of_regression_run_as_printed():
     pytest.importorskip("sklearn", reason="scikit-learn is not installed")
-    place: dict[str, object] = {}
-    for block in blocks("regression.md", "python"):
-        exec(compile(block, "regression.md", "exec"), place)
+    run_as_printed("regression.md")
 
 
 def test_robustness_runs_as_printed(capsys):
-    place: dict[str, object] = {}
-    for block in blocks("robustness.md", "python"):
-        exec(compile(block, "robustness.md", "exec"), place)
+    place = run_as_printed("robustness.md")
     assert len(place["problem"].starts) == 500
     assert blocks("robustness.md", "text") == [capsys.readouterr().out]
 
 
 def test_a_published_matrix_is_varied_as_printed():
-    place: dict[str, object] = {}
-    for block in blocks("encodings.md", "python"):
-        exec(compile(block, "encodings.md", "exec"), place)
+    run_as_printed("encodings.md")
 
 
 @pytest.mark.slow

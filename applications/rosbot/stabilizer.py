@@ -137,7 +137,7 @@ def synthesize_stabilizer(
         rough=stabilization(
             training_poses(stream(seed, _ROUGH), 64), period=0.1, horizon=20.0, method="heun", stop=False
         ),
-        tuned=_training(seed, _TUNING, period=0.05, horizon=20.0),
+        tuned=_tuning(seed),
         trials=trials,
         islands=ISLANDS if budget >= ENOUGH else None,
         folder=folder,
@@ -148,16 +148,13 @@ def synthesize_stabilizer(
     )
 
 
-def _training(seed: int, path: int, *, period: float, horizon: float) -> Problem:
+def _tuning(seed: int) -> Problem:
     """Dynamics in long steps: lags below LAG would need shorter ones, and to a law they are all the same."""
-    plant, starts = dynamic_unicycle(), training_poses(stream(seed, path), 64)
-    draws = random_draws(plant, stream(seed, path, _DRAWS), len(starts), delay=DELAY)
+    plant, starts = dynamic_unicycle(), training_poses(stream(seed, _TUNING), 64)
+    draws = random_draws(plant, stream(seed, _TUNING, _DRAWS), len(starts), delay=DELAY)
     lags = [name.startswith("tau") for name in plant.parameter_names]
-    slower = np.where(lags, np.maximum(draws.parameters, LAG), draws.parameters)
-    settings: Any = {"horizon": horizon, "method": "heun", "step": LAG, "stop": False}
-    return stabilization(
-        starts, period=period, plant=plant, draws=Draws(slower, delay=draws.delay), **settings
-    )
+    slower = Draws(np.where(lags, np.maximum(draws.parameters, LAG), draws.parameters), delay=draws.delay)
+    return stabilization(starts, horizon=20.0, method="heun", plant=plant, stop=False, draws=slower, step=LAG)
 
 
 def _away(x: Pose, u: Pose, goal: Pose) -> Any:
