@@ -37,6 +37,23 @@ class Schedule:
         """When each point stops being the target, (k,) s."""
         return np.cumsum(self.dwell)
 
+    def after(self, elapsed: float) -> "Schedule":
+        """What is left of it after so many seconds: points that are over drop out, the last one stays for no time."""
+        left = np.diff(np.maximum(self.ends - elapsed, 0.0), prepend=0.0)
+        kept = left > 0.0
+        kept[-1:] |= not np.any(kept)
+        return Schedule(self.points[kept], left[kept])
+
+    def split(self, count: int) -> "Schedule":
+        """The same motion with `count` points, more than it has: the longest dwell times are cut in two."""
+        points, dwell = self.points, self.dwell
+        while len(dwell) < count:
+            longest = int(np.argmax(dwell))
+            points = np.insert(points, longest, points[longest], axis=0)
+            dwell = np.insert(dwell, longest, 0.5 * dwell[longest])
+            dwell[longest + 1] -= dwell[longest]
+        return Schedule(points, dwell)
+
 
 def _numbers(what: str, values: npt.ArrayLike) -> Floats:
     try:

@@ -4,11 +4,13 @@ import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
 from applications.rosbot.bounds import lower_bound
+from applications.rosbot.following import follow
 from applications.rosbot.model import reached
 from applications.rosbot.reachability import reachability
 from applications.rosbot.replay import Replay, replay
@@ -36,12 +38,17 @@ class PlanReport:
     reason: str  # empty for a plan
     planning_time: float  # s
     evaluations: int
-    lower_bound: float  # s
+    scenario: Scenario
     seed: int
     plan: Plan | None = None
     law: Law | None = None
     replay: Replay | None = None  # by the simulator that shares nothing with the planner's
     history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
+
+    @cached_property
+    def lower_bound(self) -> float:
+        """A time (s) below which no plan can be; it takes longer to find than a first plan, so only when asked for."""
+        return lower_bound(self.scenario)
 
     @property
     def ratio(self) -> float:
@@ -59,11 +66,16 @@ def plan_scenario(
     effort: Effort = Effort(),
     threads: int = 1,
     callback: Callback | None = None,
+    previous: PlanReport | None = None,
+    elapsed: float = 0.0,
 ) -> PlanReport:
     """The fastest collision-free plan found with any of the laws; the same seed gives the same plan.
 
-    `callback` gets every swarm's best plan after each of its rounds, not yet replayed; returning True ends that swarm.
-    Raises ScenarioError if there is no law, or one that does not steer v and omega.
+    With a `previous` report, whose plan has been driven for `elapsed` seconds, what is left of that plan is improved
+    under the scenario as it is now: its start is where the robot is, its circles where they are. Only if no
+    collision-free plan lies near, everything is searched. `callback` gets every swarm's best plan after each of its
+    rounds, not yet replayed; returning True ends that swarm. Raises ScenarioError if there is no law, or one that does
+    not steer v and omega.
     """
     began = time.perf_counter()
     problems = _problems(scenario, laws)
@@ -71,8 +83,13 @@ def plan_scenario(
     if at_rest.solves:
         report = _arrived(scenario, problems[0][1], at_rest, seed)
         return replace(report, planning_time=time.perf_counter() - began)
+    report = PlanReport("not_found", "", 0.0, 0, scenario, seed)
+    if previous is not None and previous.plan is not None and previous.law is not None:
+        report = _followed(report, previous.plan, previous.law, elapsed, effort)
+        if report.status == "planned":
+            return replace(report, planning_time=time.perf_counter() - began)
     verdict = reachability(scenario)
-    report = PlanReport("unreachable", verdict.reason, 0.0, 0, lower_bound(scenario), seed)
+    report = replace(report, status="unreachable", reason=verdict.reason)
     if verdict.status != "unreachable":
         ways = routes(scenario, margin=effort.scouts.margin)
         budget, found = first_budget(scenario, ways), list[Swarm]()
@@ -80,7 +97,7 @@ def plan_scenario(
             with ThreadPoolExecutor(threads) as pool:
                 search = Search(scenario, problems, effort, seed, attempt, pool, callback)
                 found += search.run(ways, min(budget * 2.0**attempt, scenario.time_limit))
-            report = _verified(scenario, found, report)
+            report = _verified(scenario, [(swarm.plan, swarm.law) for swarm in found], report)
             if report.status == "planned":
                 break
     return replace(report, planning_time=time.perf_counter() - began)
@@ -140,23 +157,32 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
         history=(),
         swarm=(),
     )
-    return PlanReport("planned", "", 0.0, 0, lower_bound(scenario), seed, plan=plan, law=law, replay=at_rest)
+    return PlanReport("planned", "", 0.0, 0, scenario, seed, plan=plan, law=law, replay=at_rest)
 
 
-def _verified(scenario: Scenario, swarms: Sequence[Swarm], report: PlanReport) -> PlanReport:
+def _followed(report: PlanReport, previous: Plan, law: Law, elapsed: float, effort: Effort) -> PlanReport:
+    """The plan near what is left of the previous one, or that there is none."""
+    if not len(previous.schedule.dwell):
+        return report
+    [(problem, law)] = _problems(report.scenario, [law])
+    found = follow(problem, law, previous, elapsed, effort.followers, report.seed)
+    return _verified(report.scenario, [(found, law)], report)
+
+
+def _verified(scenario: Scenario, found: Sequence[tuple[Plan, Law]], report: PlanReport) -> PlanReport:
     """The fastest plan that the other simulator confirms, or that there is none."""
-    plans = [swarm.plan for swarm in swarms]
+    plans = [plan for plan, _ in found]
     evaluations = sum(plan.evaluations for plan in plans)
-    for swarm in sorted(swarms, key=lambda swarm: swarm.plan.rank):
-        check = replay(scenario, swarm.plan.trajectory.u, PERIOD) if swarm.plan.is_free else None
+    for plan, law in sorted(found, key=lambda each: each[0].rank):
+        check = replay(scenario, plan.trajectory.u, PERIOD) if plan.is_free else None
         if check is not None and check.solves:
             return replace(
                 report,
                 status="planned",
                 reason="",
                 evaluations=evaluations,
-                plan=swarm.plan,
-                law=swarm.law,
+                plan=plan,
+                law=law,
                 replay=check,
                 history=_improvements(plans),
             )

@@ -33,6 +33,7 @@ class Effort:
     scouts: PlanSettings = PlanSettings(particles=32, iterations=12, rounds=3)
     chasers: PlanSettings = PlanSettings(particles=48, iterations=15, rounds=6, patience=1.1)
     refiners: PlanSettings = PlanSettings(particles=32, iterations=30, rounds=5, patience=1.02)
+    followers: PlanSettings = PlanSettings(particles=32, iterations=4, rounds=2)  # of a previous plan
     chased: int = 4  # scouts that are followed up
     refined: int = 2
     added: int = 2  # points that refinement adds
@@ -127,7 +128,8 @@ class Search:
 
     def refiner(self, swarm: Swarm, budget: float) -> Swarm:
         """The best schedule with more points, searched nearby."""
-        schedule = _with_more_points(swarm.plan.schedule, self.effort.added)
+        schedule = swarm.plan.schedule
+        schedule = schedule.split(len(schedule.dwell) + self.effort.added)
         settings = replace(self.effort.refiners, points=len(schedule.dwell))
         rng = stream(self.seed, REFINE, self.attempt, swarm.number, 0)
         initial = nearby(schedule, settings.particles, self.effort.nearness, rng)
@@ -178,14 +180,3 @@ def _leaders(swarms: Sequence[Swarm], count: int) -> list[Swarm]:
 
 def _rank(swarm: Swarm) -> tuple[bool, float]:
     return swarm.plan.rank
-
-
-def _with_more_points(schedule: Schedule, added: int) -> Schedule:
-    """The same motion with the longest dwell times cut in two."""
-    points, dwell = schedule.points, schedule.dwell
-    for _ in range(added):
-        longest = int(np.argmax(dwell))
-        points = np.insert(points, longest, points[longest], axis=0)
-        dwell = np.insert(dwell, longest, 0.5 * dwell[longest])
-        dwell[longest + 1] -= dwell[longest]
-    return Schedule(points, dwell)

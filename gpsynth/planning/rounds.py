@@ -91,7 +91,7 @@ def plan(  # noqa: PLR0913 names each choice as a keyword
     for number in range(1, settings.rounds + 1):
         if best.is_admissible and best.arrival_time < objective.budget:
             # Algorithm 1: T+ <- T_used, and with it the switching step
-            objective = replace(objective, budget=best.arrival_time)
+            objective = replace(objective, budget=max(best.arrival_time, problem.period))
         history = (*history, (found.evaluations, objective.budget))
         best = replace(best, evaluations=found.evaluations, history=history)
         if (callback is not None and callback(best)) or number == settings.rounds:
