@@ -196,7 +196,7 @@ def test_a_plan_file_without_a_plan_gives_the_reason():
 
 def test_guides_lead_from_start_to_goal_and_bring_cusps():
     trap = scene(circles=[[0.8, y, 0.0, 0.0, 0.2] for y in (-0.6, -0.3, 0.0, 0.3, 0.6)])
-    guides = guides_along(trap, routes(trap)[0]) + direct_guides(trap)
+    guides = guides_along(trap, routes(trap))[0] + direct_guides(trap)
     for guide in guides:
         assert np.allclose(guide.poses[[0, -1], :2], [[0.0, 0.0], [3.0, 0.0]], atol=1e-6)
     assert any(len(guide.cusps) for guide in guides)
@@ -205,7 +205,7 @@ def test_guides_lead_from_start_to_goal_and_bring_cusps():
 
 def test_guides_do_not_drive_where_the_limits_forbid():
     forwards = scene(speed_limits=(0.0, 0.5))
-    assert all(np.all(guide.senses > 0.0) for guide in guides_along(forwards, routes(forwards)[0]))
+    assert all(np.all(guide.senses > 0.0) for guide in guides_along(forwards, routes(forwards))[0])
 
 
 def test_a_schedule_along_a_guide_takes_its_time_and_points_at_its_cusps():
@@ -223,4 +223,3 @@ def test_schedules_repeat_the_guides_with_noise():
     assert np.array_equal(schedules[1].points, along(guides[1], 4).points)
     assert not np.array_equal(schedules[2].points, schedules[0].points)
     assert np.array_equal(nearby(schedules[0], 3, 0.1, stream(2))[0].points, schedules[0].points)
-    assert schedules_along([], 4, 5, stream(1)) == []
