@@ -89,6 +89,50 @@ def test_what_shuts_the_way_of_a_previous_plan_is_driven_around(report):
     assert again.replay.solves
 
 
+def test_every_report_on_the_way_is_replayed_and_no_worse_than_the_one_before():
+    seen = []
+    last = plan_scenario(scene(), [law()], seed=1, effort=QUICK, callback=seen.append)
+    found = [each for each in seen if each.status == "planned"]
+    assert len(found) > 3
+    assert all(replay(scene(), each.plan.trajectory.u, PERIOD).solves for each in found)
+    times = [each.plan.arrival_time for each in found]
+    assert times == sorted(times, reverse=True)
+    assert last.plan.arrival_time == times[-1]
+    assert last.ended == "complete"
+
+
+def test_the_callback_ends_the_search_with_the_plan_it_was_shown(report):
+    first = plan_scenario(
+        scene(), [law()], seed=1, effort=QUICK, callback=lambda each: each.status == "planned"
+    )
+    assert (first.status, first.ended) == ("planned", "callback")
+    assert first.replay.solves
+    assert first.evaluations < report.evaluations / 3
+
+
+def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
+    few = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, rollouts=300))
+    assert (few.status, few.ended) == ("planned", "rollouts")
+    assert 300 <= few.evaluations < report.evaluations
+    now = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=0.0))
+    assert now.ended == "deadline"
+    assert now.evaluations < 300
+
+
+def test_an_interrupted_search_gives_the_best_plan_so_far():
+    def interrupt(report):
+        if report.status == wanted:
+            raise KeyboardInterrupt
+
+    wanted = "planned"
+    stopped = plan_scenario(scene(), [law()], seed=1, effort=QUICK, callback=interrupt)
+    assert (stopped.status, stopped.ended) == ("planned", "interrupted")
+    assert stopped.replay.solves
+    wanted = "not_found"
+    with pytest.raises(KeyboardInterrupt):
+        plan_scenario(scene(time_limit=3.0), [law()], effort=QUICK, callback=interrupt)
+
+
 def test_public_scenarios_are_solved_or_unreachable(public):
     report = plan_scenario(public, [law()], seed=0, effort=QUICK)
     assert report.status == ("planned" if public.expect_feasible else "unreachable")
