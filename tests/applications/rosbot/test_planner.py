@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from applications.rosbot import planner
+from applications.rosbot.following import nearest_time
 from applications.rosbot.guides import direct_guides, guides_along
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.plan_file import plan_document, write_plan
@@ -15,7 +16,7 @@ from applications.rosbot.polar_law import HOT, SATURATING, polar_law
 from applications.rosbot.replay import replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.seeds import along, nearby, schedules_along
+from applications.rosbot.seeds import along, nearby, repeated, schedules_along
 from gpsynth.errors import ScenarioError
 from gpsynth.planning import PlanSettings
 from gpsynth.seeds import stream
@@ -69,6 +70,79 @@ def test_the_same_seed_gives_the_same_plan_for_any_number_of_threads(report):
     again = plan_scenario(scene(), [law()], seed=1, effort=QUICK, threads=2)
     assert np.array_equal(again.plan.trajectory.u, report.plan.trajectory.u)
     assert again.evaluations == report.evaluations
+
+
+def test_a_plan_is_taken_up_on_the_way(report):
+    driven = 6
+    on_the_way = scene(start=report.plan.trajectory.x[driven])
+    again = plan_scenario(on_the_way, [law()], seed=1, effort=QUICK, previous=report, elapsed=driven * PERIOD)
+    assert again.replay.solves
+    assert again.evaluations < report.evaluations / 3
+    assert again.plan.arrival_time <= report.plan.arrival_time - driven * PERIOD + 1e-9
+
+
+@pytest.mark.parametrize("share", [0.3, 1.0])
+def test_the_time_of_a_robot_beside_its_plan_is_that_of_the_nearest_pose(report, share):
+    t, x = report.plan.trajectory.t, report.plan.trajectory.x
+    here = x[20] + share * (x[21] - x[20])
+    aside = here + np.array([-0.01 * np.sin(here[2]), 0.01 * np.cos(here[2]), 2.0 * np.pi])
+    assert nearest_time(report.plan.trajectory, aside, t[24]) == pytest.approx(
+        t[20] + share * PERIOD, abs=2e-3
+    )
+    assert nearest_time(report.plan.trajectory, x[0], 100.0) == 100.0  # nothing is near that time
+
+
+def test_what_shuts_the_way_of_a_previous_plan_is_driven_around(report):
+    wall = [[1.5, y, 0.0, 0.0, 0.3] for y in np.arange(-0.4, 3.0, 0.5)]
+    wall += [[1.5, y, 0.0, 0.0, 0.3] for y in np.arange(-3.0, -1.2, 0.5)]
+    blocked = scene(start=report.plan.trajectory.x[6], circles=wall)
+    assert not replay(blocked, report.plan.trajectory.u[6:], PERIOD).solves
+    again = plan_scenario(blocked, [law()], effort=QUICK, previous=report, elapsed=6 * PERIOD)
+    assert again.replay.solves
+
+
+def test_every_report_on_the_way_is_replayed_and_no_worse_than_the_one_before():
+    seen = []
+    last = plan_scenario(scene(), [law()], seed=1, effort=QUICK, callback=seen.append)
+    found = [each for each in seen if each.status == "planned"]
+    assert len(found) > 3
+    assert all(replay(scene(), each.plan.trajectory.u, PERIOD).solves for each in found)
+    times = [each.plan.arrival_time for each in found]
+    assert times == sorted(times, reverse=True)
+    assert last.plan.arrival_time == times[-1]
+    assert last.ended == "complete"
+
+
+def test_the_callback_ends_the_search_with_the_plan_it_was_shown(report):
+    first = plan_scenario(
+        scene(), [law()], seed=1, effort=QUICK, callback=lambda each: each.status == "planned"
+    )
+    assert (first.status, first.ended) == ("planned", "callback")
+    assert first.replay.solves
+    assert first.evaluations < report.evaluations / 3
+
+
+def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
+    few = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, rollouts=300))
+    assert (few.status, few.ended) == ("planned", "rollouts")
+    assert 300 <= few.evaluations < report.evaluations
+    now = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=0.0))
+    assert now.ended == "deadline"
+    assert now.evaluations < 300
+
+
+def test_an_interrupted_search_gives_the_best_plan_so_far():
+    def interrupt(report):
+        if report.status == wanted:
+            raise KeyboardInterrupt
+
+    wanted = "planned"
+    stopped = plan_scenario(scene(), [law()], seed=1, effort=QUICK, callback=interrupt)
+    assert (stopped.status, stopped.ended) == ("planned", "interrupted")
+    assert stopped.replay.solves
+    wanted = "not_found"
+    with pytest.raises(KeyboardInterrupt):
+        plan_scenario(scene(time_limit=3.0), [law()], effort=QUICK, callback=interrupt)
 
 
 def test_public_scenarios_are_solved_or_unreachable(public):
@@ -131,8 +205,9 @@ def test_nothing_that_the_replay_rejects_is_called_planned(monkeypatch):
     assert (rejected.plan, rejected.replay, plan_document(rejected)["controls"]) == (None, None, [])
 
 
-def test_the_ratio_shows_when_a_bound_is_beaten(report):
-    assert replace(report, lower_bound=2.0 * report.replay.arrival_time).ratio == 0.5
+def test_the_ratio_shows_when_a_bound_is_beaten(report, monkeypatch):
+    monkeypatch.setattr(planner, "lower_bound", lambda scenario: 2.0 * report.replay.arrival_time)
+    assert replace(report).ratio == 0.5
 
 
 def test_the_better_of_two_laws_is_taken():
@@ -177,7 +252,7 @@ def test_a_plan_file_without_a_plan_gives_the_reason():
 
 def test_guides_lead_from_start_to_goal_and_bring_cusps():
     trap = scene(circles=[[0.8, y, 0.0, 0.0, 0.2] for y in (-0.6, -0.3, 0.0, 0.3, 0.6)])
-    guides = guides_along(trap, routes(trap)[0]) + direct_guides(trap)
+    guides = guides_along(trap, routes(trap))[0] + direct_guides(trap)
     for guide in guides:
         assert np.allclose(guide.poses[[0, -1], :2], [[0.0, 0.0], [3.0, 0.0]], atol=1e-6)
     assert any(len(guide.cusps) for guide in guides)
@@ -186,7 +261,7 @@ def test_guides_lead_from_start_to_goal_and_bring_cusps():
 
 def test_guides_do_not_drive_where_the_limits_forbid():
     forwards = scene(speed_limits=(0.0, 0.5))
-    assert all(np.all(guide.senses > 0.0) for guide in guides_along(forwards, routes(forwards)[0]))
+    assert all(np.all(guide.senses > 0.0) for guide in guides_along(forwards, routes(forwards))[0])
 
 
 def test_a_schedule_along_a_guide_takes_its_time_and_points_at_its_cusps():
@@ -199,9 +274,8 @@ def test_a_schedule_along_a_guide_takes_its_time_and_points_at_its_cusps():
 
 def test_schedules_repeat_the_guides_with_noise():
     guides = direct_guides(scene())[:2]
-    schedules = schedules_along(guides, 4, 5, stream(1))
+    schedules = repeated(schedules_along(guides, 4), 5, stream(1))
     assert len(schedules) == 5
     assert np.array_equal(schedules[1].points, along(guides[1], 4).points)
     assert not np.array_equal(schedules[2].points, schedules[0].points)
     assert np.array_equal(nearby(schedules[0], 3, 0.1, stream(2))[0].points, schedules[0].points)
-    assert schedules_along([], 4, 5, stream(1)) == []
