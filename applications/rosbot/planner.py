@@ -11,11 +11,12 @@ import numpy as np
 from applications.rosbot.bounds import lower_bound
 from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.model import reached
-from applications.rosbot.reachability import reachability
+from applications.rosbot.reachability import Reachability, reachability
 from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.swarms import Callback, Effort, Search, Swarm, first_budget
+from applications.rosbot.swarms import Callback, Effort, Search, first_budget
+from applications.rosbot.watch import Watch
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Plan
@@ -27,6 +28,7 @@ __all__ = ["PERIOD", "Effort", "PlanReport", "plan_scenario", "problem_of"]
 
 PERIOD = 0.05  # s of the control: 2.5 cm at 0.5 m/s; twice as long costs time at every switch, half as long computing
 INSIDE = (0.001, 0.002)  # m, rad: how far within the tolerance a plan arrives, so that no rounding undoes it
+ROUNDING = 1e-9  # share of a bound that its arithmetic may be off by
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +46,7 @@ class PlanReport:
     replay: Replay | None = None  # by the simulator that shares nothing with the planner's
     certificate: Certificate | None = None  # for the path between its samples
     history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
+    is_interrupted: bool = False  # by Ctrl-C: more time might have found a faster plan
 
     @property
     def ratio(self) -> float:
@@ -65,6 +68,7 @@ def plan_scenario(
     """The fastest collision-free plan found with any of the laws; the same seed gives the same plan.
 
     `callback` gets every swarm's best plan after each of its rounds, not yet replayed; returning True ends that swarm.
+    Ctrl-C ends all of them; the best plan so far is the result, and without one it is a KeyboardInterrupt as usual.
     Raises ScenarioError if there is no law, or one that does not steer v and omega.
     """
     began = time.perf_counter()
@@ -74,18 +78,22 @@ def plan_scenario(
     if at_rest.solves and stay.is_clear:
         report = _arrived(scenario, problems[0][1], at_rest, seed)
         return replace(report, certificate=stay, planning_time=time.perf_counter() - began)
-    verdict = reachability(scenario)
+    verdict = _verdict(scenario)
     report = PlanReport("unreachable", verdict.reason, 0.0, 0, lower_bound(scenario), seed)
     if verdict.status != "unreachable":
         ways = routes(scenario, margin=effort.scouts.margin)
-        budget, found = first_budget(scenario, ways), list[Swarm]()
+        budget, found, watch = first_budget(scenario, ways), list[tuple[Plan, Law]](), Watch(callback)
         for attempt in range(effort.attempts):
-            with ThreadPoolExecutor(threads) as pool:
-                search = Search(scenario, problems, effort, seed, attempt, pool, callback)
-                found += search.run(ways, min(budget * 2.0**attempt, scenario.time_limit))
-            report = _verified(scenario, found, report)
+            with ThreadPoolExecutor(threads) as pool, watch.keeping(pool):
+                search = Search(scenario, problems, effort, seed, attempt, pool, watch.of)
+                swarms = search.run(ways, min(budget * 2.0**attempt, scenario.time_limit))
+                found += [(swarm.plan, swarm.law) for swarm in swarms]
+            report = _verified(scenario, list(watch.latest.values()) if watch.is_stopped else found, report)
             if report.status == "planned":
                 break
+            if watch.is_stopped:
+                raise KeyboardInterrupt
+        report = replace(report, is_interrupted=watch.is_stopped)
     return replace(report, planning_time=time.perf_counter() - began)
 
 
@@ -120,6 +128,20 @@ def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, La
     return [(problem_of(scenario, law), law) for law in adapted]
 
 
+def _verdict(scenario: Scenario) -> Reachability:
+    """Whether the goal can be reached, and where time is scarce, whether any plan is as fast as the time limit asks."""
+    verdict = reachability(scenario)
+    if verdict.status == "unreachable" or scenario.time_limit >= first_budget(scenario, ()):
+        return verdict
+    least = lower_bound(scenario)
+    if least * (1.0 - ROUNDING) <= scenario.time_limit:
+        return verdict
+    return Reachability(
+        "unreachable",
+        f"too late: no plan arrives before {least:.4g} s, and the time limit is {scenario.time_limit:g} s",
+    )
+
+
 def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanReport:
     """The plan to stay, of a start within the tolerance: without points, controls and search."""
     stay = Trajectory(
@@ -146,29 +168,30 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
     return PlanReport("planned", "", 0.0, 0, lower_bound(scenario), seed, plan=plan, law=law, replay=at_rest)
 
 
-def _verified(scenario: Scenario, swarms: Sequence[Swarm], report: PlanReport) -> PlanReport:
+def _verified(scenario: Scenario, found: Sequence[tuple[Plan, Law]], report: PlanReport) -> PlanReport:
     """The fastest plan that the other simulator confirms and the certificate clears, or that there is none."""
-    plans = [swarm.plan for swarm in swarms]
+    plans = [plan for plan, _ in found]
     evaluations = sum(plan.evaluations for plan in plans)
-    for swarm in sorted(swarms, key=lambda swarm: swarm.plan.rank):
-        check = replay(scenario, swarm.plan.trajectory.u, PERIOD) if swarm.plan.is_free else None
+    for plan, law in sorted(found, key=lambda each: each[0].rank):
+        check = replay(scenario, plan.trajectory.u, PERIOD) if plan.is_free else None
         if check is None or not check.solves:
             continue
-        proof = certify(scenario, swarm.plan.trajectory.u, PERIOD, until=check.arrival_time)
+        proof = certify(scenario, plan.trajectory.u, PERIOD, until=check.arrival_time)
         if proof.is_clear:
             return replace(
                 report,
                 status="planned",
                 reason="",
                 evaluations=evaluations,
-                plan=swarm.plan,
-                law=swarm.law,
+                plan=plan,
+                law=law,
                 replay=check,
                 certificate=proof,
                 history=_improvements(plans),
             )
     reason = (
-        f"no collision-free plan within {scenario.time_limit:g} s was found; the goal may still be reachable"
+        f"the search is over after {evaluations} rollouts, and no collision-free plan within {scenario.time_limit:g} s "
+        "was found; the goal may still be reachable"
     )
     return replace(report, status="not_found", reason=reason, evaluations=evaluations)
 

@@ -78,7 +78,7 @@ class Search:
     seed: int
     attempt: int
     pool: ThreadPoolExecutor
-    callback: Callback | None = None
+    watch: Callable[[Law], Callback]  # the callback of a swarm with this law
 
     def run(self, routes: Sequence[Route], budget: float) -> list[Swarm]:
         """The swarms after every stage; T+ (s) is `budget` at first."""
@@ -115,7 +115,7 @@ class Search:
                 region=region,
                 budget=budget,
                 path=(SCOUT, self.attempt, number, 1),
-                callback=self.callback,
+                callback=self.watch(law),
             )
             swarms.append(Swarm(number, problem, law, guides, region, found))
         return swarms
@@ -145,7 +145,7 @@ class Search:
             region=swarm.region,
             budget=budget,
             path=(stage, self.attempt, swarm.number, 1),
-            callback=self.callback,
+            callback=self.watch(swarm.law),
         )
         return replace(swarm, plan=found)
 

@@ -112,10 +112,15 @@ def test_a_moving_obstacle_is_met_where_it_then_is():
 def test_an_unreachable_goal_is_told_from_one_that_was_not_found():
     ring = [[3.0 + 0.6 * np.cos(a), 0.6 * np.sin(a), 0.0, 0.0, 0.2] for a in np.linspace(0.0, 6.2, 12)]
     unreachable = plan_scenario(scene(circles=ring), [law()], effort=QUICK)
-    too_late = plan_scenario(scene(time_limit=3.0), [law()], effort=replace(QUICK, attempts=1))
+    too_late = plan_scenario(scene(time_limit=3.0), [law()], effort=QUICK)
+    limit = too_late.lower_bound + 0.01
+    not_found = plan_scenario(scene(time_limit=limit), [law()], effort=replace(QUICK, attempts=1))
     assert (unreachable.status, unreachable.evaluations) == ("unreachable", 0)
-    assert too_late.status == "not_found"
-    assert "no collision-free plan within 3 s" in too_late.reason
+    assert (too_late.status, too_late.evaluations) == ("unreachable", 0)
+    assert f"too late: no plan arrives before {too_late.lower_bound:.4g} s" in too_late.reason
+    assert (not_found.status, not_found.evaluations > 0) == ("not_found", True)
+    assert f"after {not_found.evaluations} rollouts" in not_found.reason
+    assert f"no collision-free plan within {limit:g} s was found" in not_found.reason
 
 
 def test_a_start_at_the_goal_has_arrived():
