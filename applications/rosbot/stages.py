@@ -96,6 +96,9 @@ def _keep(report: PlanReport, path: Path) -> None:
     """Write a plan, before anything else that may fail; if it cannot be written, print it and raise FileError."""
     try:
         write_plan(report, path)
+    except KeyboardInterrupt:
+        write_plan(report, path)
+        raise
     except FileError as error:
         click.echo(json.dumps(plan_document(report), allow_nan=False))
         raise FileError(f"{error}; what was found is on standard output instead") from None

@@ -267,6 +267,21 @@ def test_ctrl_c_keeps_the_best_plan_so_far(capsys, monkeypatch, scenario_file, l
     assert (out / "plan.png").exists()
 
 
+def test_ctrl_c_while_a_plan_is_written_comes_too_late(monkeypatch, scenario_file, law_file, quick, tmp_path):
+    replace, pressed = os.replace, []
+
+    def interrupted(self, target):
+        if not pressed and target.name == "plan.json":
+            pressed.append(True)
+            raise KeyboardInterrupt
+        replace(self, target)
+
+    quick()
+    monkeypatch.setattr(Path, "replace", interrupted)
+    assert _run("plan", scenario_file(), "--out", tmp_path / "out", "--law", law_file) == 130
+    _replays(json.loads((tmp_path / "out" / "plan.json").read_text()), SCENARIO)
+
+
 def test_ctrl_c_before_a_plan_leaves_none(monkeypatch, scenario_file, law_file, tmp_path):
     monkeypatch.setattr(Watch, "of", lambda self, law: signal.raise_signal(signal.SIGINT))
     assert _run("plan", scenario_file(), "--out", tmp_path / "out", "--law", law_file) == 130
