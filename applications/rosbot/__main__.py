@@ -104,7 +104,7 @@ def plan(scenario_file: Path, out: Path, law_file: Path | None, seed: int, threa
     law = load_steering_law(law_file) if law_file else default_law()
     made = read_plan(run_plan(begin(out, seed), scenario_file, law, seed=seed, threads=threads))
     print_plans([(name, made)])
-    if made.interrupted:
+    if made.ended == "interrupted":
         raise KeyboardInterrupt
     return EXIT_CODES[made.status]
 

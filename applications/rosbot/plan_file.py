@@ -29,7 +29,7 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
         "format": FORMAT,
         "status": report.status,
         "reason": report.reason,
-        "interrupted": report.is_interrupted,
+        "ended": report.ended,
         "arrival_time": None,
         "clearance": None,
         "certificate": None,

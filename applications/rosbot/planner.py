@@ -1,52 +1,70 @@
 """Plans for scenarios: what can be reached is searched for, and what is found is replayed by another simulator."""
 
 import time
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from applications.rosbot.bounds import lower_bound
 from applications.rosbot.certificate import Certificate, certify
+from applications.rosbot.following import follow
+from applications.rosbot.guides import top_speed
 from applications.rosbot.model import reached
 from applications.rosbot.reachability import Reachability, reachability
 from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.swarms import Callback, Effort, Search, first_budget
-from applications.rosbot.watch import Watch
+from applications.rosbot.swarms import Effort, Found, Search
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
-from gpsynth.planning import Plan
+from gpsynth.planning import Particles, Plan
 from gpsynth.problem import Obstacles, Problem
-from gpsynth.schedule import Schedule
+from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import Trajectory
 
-__all__ = ["PERIOD", "Effort", "PlanReport", "plan_scenario", "problem_of"]
+__all__ = ["PERIOD", "Callback", "Effort", "PlanReport", "plan_scenario", "problem_of"]
 
 PERIOD = 0.05  # s of the control: 2.5 cm at 0.5 m/s; twice as long costs time at every switch, half as long computing
 INSIDE = (0.001, 0.002)  # m, rad: how far within the tolerance a plan arrives, so that no rounding undoes it
 ROUNDING = 1e-9  # share of a bound that its arithmetic may be off by
 
+Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
+WHEN: Mapping[Ended, str] = MappingProxyType(
+    {
+        "complete": "",
+        "callback": ", when the search was ended",
+        "rollouts": ", all that were allowed",
+        "deadline": ", when the deadline came",
+        "interrupted": ", when the search was interrupted",
+    }
+)
+
 
 @dataclass(frozen=True, eq=False)
 class PlanReport:
-    """What planning came to."""
+    """What planning came to, or has come to so far."""
 
     status: Literal["planned", "unreachable", "not_found"]
     reason: str  # empty for a plan
     planning_time: float  # s
     evaluations: int
-    lower_bound: float  # s
+    scenario: Scenario
     seed: int
     plan: Plan | None = None
     law: Law | None = None
     replay: Replay | None = None  # by the simulator that shares nothing with the planner's
     certificate: Certificate | None = None  # for the path between its samples
     history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
-    is_interrupted: bool = False  # by Ctrl-C: more time might have found a faster plan
+    ended: Ended = "complete"
+
+    @cached_property
+    def lower_bound(self) -> float:
+        """A time (s) below which no plan can be; it takes longer to find than a first plan, so only when asked for."""
+        return lower_bound(self.scenario)
 
     @property
     def ratio(self) -> float:
@@ -54,6 +72,9 @@ class PlanReport:
         if self.replay is None:
             return np.inf
         return self.replay.arrival_time / self.lower_bound if self.lower_bound else 1.0
+
+
+Callback = Callable[[PlanReport], bool | None]
 
 
 def plan_scenario(
@@ -64,53 +85,100 @@ def plan_scenario(
     effort: Effort = Effort(),
     threads: int = 1,
     callback: Callback | None = None,
+    previous: PlanReport | None = None,
+    elapsed: float = 0.0,
 ) -> PlanReport:
     """The fastest collision-free plan found with any of the laws; the same seed gives the same plan.
 
-    `callback` gets every swarm's best plan after each of its rounds, not yet replayed; returning True ends that swarm.
-    Ctrl-C ends all of them; the best plan so far is the result, and without one it is a KeyboardInterrupt as usual.
-    Raises ScenarioError if there is no law, or one that does not steer v and omega.
+    `callback` gets the report as it stands after every round, its plan replayed; returning True ends the search, and so
+    does Ctrl-C once there is a plan. With a `previous` report, whose plan has been driven for `elapsed` seconds, what
+    is left of that plan is improved under the scenario as it is now: its start is where the robot is, its circles where
+    they are. Only if no collision-free plan lies near, everything is searched. Raises ScenarioError if there is no law,
+    or one that does not steer v and omega.
     """
-    began = time.perf_counter()
+    watch = _Watch(time.perf_counter(), effort, callback)
     problems = _problems(scenario, laws)
     at_rest = replay(scenario, np.empty((0, 2)), PERIOD)
     stay = certify(scenario, np.empty((0, 2)), PERIOD)
     if at_rest.solves and stay.is_clear:
-        report = _arrived(scenario, problems[0][1], at_rest, seed)
-        return replace(report, certificate=stay, planning_time=time.perf_counter() - began)
+        arrived = _arrived(scenario, problems[0][1], at_rest, seed)
+        return watch.stamped(replace(arrived, certificate=stay))
+    report = PlanReport("not_found", "", 0.0, 0, scenario, seed)
+    if previous is not None and previous.plan is not None and previous.law is not None:
+        report = watch.improved(report, _followed(report, previous.plan, previous.law, elapsed, effort))
+        if report.status == "planned" or report.ended != "complete":
+            return report
     verdict = _verdict(scenario)
-    report = PlanReport("unreachable", verdict.reason, 0.0, 0, lower_bound(scenario), seed)
-    if verdict.status != "unreachable":
-        ways = routes(scenario, margin=effort.scouts.margin)
-        budget, found, watch = first_budget(scenario, ways), list[tuple[Plan, Law]](), Watch(callback)
-        for attempt in range(effort.attempts):
-            with ThreadPoolExecutor(threads) as pool, watch.keeping(pool):
-                search = Search(scenario, problems, effort, seed, attempt, pool, watch.of)
-                swarms = search.run(ways, min(budget * 2.0**attempt, scenario.time_limit))
-                found += [(swarm.plan, swarm.law) for swarm in swarms]
-            report = _verified(scenario, list(watch.latest.values()) if watch.is_stopped else found, report)
-            if report.status == "planned":
-                break
-            if watch.is_stopped:
-                raise KeyboardInterrupt
-        report = replace(report, is_interrupted=watch.is_stopped)
-    return replace(report, planning_time=time.perf_counter() - began)
+    if verdict.status == "unreachable":
+        return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
+    ways = routes(scenario, margin=effort.scouts.margin)
+    for attempt in range(effort.attempts):
+        search = Search(scenario, ways, problems, effort, seed, attempt, threads)
+        report = watch.improved(report, search.run())
+        if report.status == "planned" or report.ended != "complete":
+            break
+    return report
+
+
+@dataclass(frozen=True, eq=False)
+class _Watch:
+    """Keeps the fastest plan of a search that the other simulator confirms, and says when to end."""
+
+    began: float
+    effort: Effort
+    callback: "Callback | None"
+
+    def improved(self, report: PlanReport, search: Iterator[Found]) -> PlanReport:
+        """The report with the fastest plan of a search, or with the reason why there is none."""
+        spent = report.evaluations
+        try:
+            for found in search:
+                report = _confirmed(replace(report, evaluations=spent + found.evaluations), found)
+                ended = self._ended(report)
+                if ended != "complete":
+                    return self.stamped(replace(report, ended=ended))
+        except KeyboardInterrupt:
+            if report.status != "planned":
+                raise
+            report = replace(report, ended="interrupted")
+        return self.stamped(report)
+
+    def stamped(self, report: PlanReport) -> PlanReport:
+        """The report with the time that it took and, without a plan, the reason."""
+        reason = _not_found(report) if report.status == "not_found" else report.reason
+        return replace(report, reason=reason, planning_time=time.perf_counter() - self.began)
+
+    def _ended(self, report: PlanReport) -> Ended:
+        if self.callback is not None and self.callback(self.stamped(report)):
+            return "callback"
+        if report.evaluations >= self.effort.rollouts:
+            return "rollouts"
+        return "deadline" if time.perf_counter() - self.began >= self.effort.deadline else "complete"
 
 
 def problem_of(scenario: Scenario, law: Law) -> Problem:
-    """The scenario as a problem for a law: least time into the tolerance, a little within its edge."""
-    position, heading = scenario.position_tolerance, scenario.heading_tolerance
+    """The scenario as a problem for a law under its limits: least time into the tolerance, a little within its edge."""
+    return replace(
+        _like(law, scenario.position_tolerance, scenario.heading_tolerance),
+        starts=scenario.start,
+        goal=scenario.goal,
+        horizon=max(PERIOD, scenario.time_limit - PERIOD),
+        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
+    )
+
+
+@lru_cache(maxsize=32)
+def _like(law: Law, position: float, heading: float) -> Problem:
+    """A problem with the programs of all problems for this law and tolerance (m, rad): to trace them takes a while."""
     shrunk = max(0.5 * position, position - INSIDE[0]), max(0.5 * heading, heading - INSIDE[1])
     return Problem(
         law.plant,
-        scenario.start,
-        scenario.goal,
+        np.zeros(3),
+        np.zeros(3),
         tolerance=[shrunk[0], shrunk[0], shrunk[1]],
-        horizon=max(PERIOD, scenario.time_limit - PERIOD),
         period=PERIOD,
         features=law.features,
         reached=reached(*shrunk),
-        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
     )
 
 
@@ -123,15 +191,15 @@ def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, La
             raise ScenarioError(
                 f"the law steers {', '.join(law.plant.control_names)}; a scenario needs v, omega"
             )
-    low, high = zip(scenario.speed_limits, scenario.turn_limits, strict=True)
-    adapted = [law.with_limits(low, high) for law in laws]
+    adapted = [_limited(law, scenario.speed_limits, scenario.turn_limits) for law in laws]
     return [(problem_of(scenario, law), law) for law in adapted]
 
 
 def _verdict(scenario: Scenario) -> Reachability:
     """Whether the goal can be reached, and where time is scarce, whether any plan is as fast as the time limit asks."""
-    verdict = reachability(scenario)
-    if verdict.status == "unreachable" or scenario.time_limit >= first_budget(scenario, ()):
+    verdict, (dx, dy, _) = reachability(scenario), scenario.goal - scenario.start
+    straight = np.hypot(dx, dy) / top_speed(scenario) + np.pi / max(map(abs, scenario.turn_limits))
+    if verdict.status == "unreachable" or scenario.time_limit >= 2.0 * straight:
         return verdict
     least = lower_bound(scenario)
     if least * (1.0 - ROUNDING) <= scenario.time_limit:
@@ -140,6 +208,12 @@ def _verdict(scenario: Scenario) -> Reachability:
         "unreachable",
         f"too late: no plan arrives before {least:.4g} s, and the time limit is {scenario.time_limit:g} s",
     )
+
+
+@lru_cache(maxsize=32)
+def _limited(law: Law, speed: tuple[float, float], turn: tuple[float, float]) -> Law:
+    low, high = zip(speed, turn, strict=True)
+    return law.with_limits(low, high)
 
 
 def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanReport:
@@ -163,45 +237,44 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
         cost=0.0,
         evaluations=0,
         history=(),
-        swarm=(),
+        particles=Particles(Schedules(np.empty((0, 0, 3)), np.empty((0, 0))), np.empty(0)),
     )
-    return PlanReport("planned", "", 0.0, 0, lower_bound(scenario), seed, plan=plan, law=law, replay=at_rest)
+    return PlanReport("planned", "", 0.0, 0, scenario, seed, plan=plan, law=law, replay=at_rest)
 
 
-def _verified(scenario: Scenario, found: Sequence[tuple[Plan, Law]], report: PlanReport) -> PlanReport:
-    """The fastest plan that the other simulator confirms and the certificate clears, or that there is none."""
-    plans = [plan for plan, _ in found]
-    evaluations = sum(plan.evaluations for plan in plans)
-    for plan, law in sorted(found, key=lambda each: each[0].rank):
-        check = replay(scenario, plan.trajectory.u, PERIOD) if plan.is_free else None
-        if check is None or not check.solves:
-            continue
-        proof = certify(scenario, plan.trajectory.u, PERIOD, until=check.arrival_time)
-        if proof.is_clear:
-            return replace(
-                report,
-                status="planned",
-                reason="",
-                evaluations=evaluations,
-                plan=plan,
-                law=law,
-                replay=check,
-                certificate=proof,
-                history=_improvements(plans),
-            )
-    reason = (
-        f"the search is over after {evaluations} rollouts, and no collision-free plan within {scenario.time_limit:g} s "
-        "was found; the goal may still be reachable"
+def _followed(
+    report: PlanReport, previous: Plan, law: Law, elapsed: float, effort: Effort
+) -> Iterator[Found]:
+    """Plans near what is left of the previous one."""
+    if not len(previous.schedule.dwell):
+        return iter(())
+    [(problem, law)] = _problems(report.scenario, [law])
+    return follow(problem, law, previous, elapsed, effort.followers, report.seed)
+
+
+def _confirmed(report: PlanReport, found: Found) -> PlanReport:
+    """The report with what was found, if that is faster, confirmed by the other simulator and cleared."""
+    scenario, plan = report.scenario, found.plan
+    if not plan.is_free or (report.plan is not None and plan.arrival_time >= report.plan.arrival_time):
+        return report
+    check = replay(scenario, plan.trajectory.u, PERIOD)
+    proof = certify(scenario, plan.trajectory.u, PERIOD, until=check.arrival_time)
+    if not (check.solves and proof.is_clear):
+        return report
+    return replace(
+        report,
+        status="planned",
+        reason="",
+        plan=plan,
+        law=found.law,
+        replay=check,
+        certificate=proof,
+        history=(*report.history, (report.evaluations, plan.arrival_time)),
     )
-    return replace(report, status="not_found", reason=reason, evaluations=evaluations)
 
 
-def _improvements(plans: Sequence[Plan]) -> tuple[tuple[int, float], ...]:
-    """(evaluations, arrival time) at every improvement, as if the searches had run one after the other."""
-    spent, best, history = 0, np.inf, []
-    for each in plans:
-        spent += each.evaluations
-        if each.is_free and each.arrival_time < best:
-            best = each.arrival_time
-            history.append((spent, best))
-    return tuple(history)
+def _not_found(report: PlanReport) -> str:
+    return (
+        f"no collision-free plan within {report.scenario.time_limit:g} s was found in {report.evaluations} rollouts"
+        f"{WHEN[report.ended]}; the goal may still be reachable"
+    )

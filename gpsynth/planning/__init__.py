@@ -2,7 +2,7 @@
 
 from gpsynth.planning.certificate import certified_clearance
 from gpsynth.planning.objective import Objective
-from gpsynth.planning.rounds import Plan, plan
+from gpsynth.planning.rounds import Particles, Plan, plan, plans
 from gpsynth.planning.settings import PlanSettings
 
-__all__ = ["Objective", "Plan", "PlanSettings", "certified_clearance", "plan"]
+__all__ = ["Objective", "Particles", "Plan", "PlanSettings", "certified_clearance", "plan", "plans"]

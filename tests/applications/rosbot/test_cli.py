@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,6 @@ from applications.rosbot.__main__ import cli, main
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import polar_law
-from applications.rosbot.watch import Watch
 from gpsynth.law import Law
 from gpsynth.planning import PlanSettings
 from gpsynth.record import Run, read_progress
@@ -240,25 +240,22 @@ def test_a_plan_is_kept_whatever_fails_after_it(
     assert gone is None or not (out / gone).exists()
 
 
+def _interrupted(monkeypatch, when):
+    """Ctrl-C at the first report of which `when` holds."""
+
+    def note(report):
+        if when(report):
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(stages, "plan_scenario", partial(plan_scenario, callback=note))
+
+
 def test_ctrl_c_keeps_the_best_plan_so_far(capsys, monkeypatch, scenario_file, law_file, tmp_path):
-    out, of, seen = tmp_path / "out", Watch.of, []
-
-    def watched(self, law):
-        note = of(self, law)
-
-        def interrupted(plan):
-            enough = note(plan)
-            seen.append(plan)
-            if sum(each.is_free for each in seen) == 3:
-                signal.raise_signal(signal.SIGINT)
-            return enough
-
-        return interrupted
-
-    monkeypatch.setattr(Watch, "of", watched)
+    out = tmp_path / "out"
+    _interrupted(monkeypatch, lambda report: len(report.history) == 2)
     assert _run("plan", scenario_file(), "--out", out, "--law", law_file) == 130
     plan = json.loads((out / "plan.json").read_text())
-    assert (plan["status"], plan["interrupted"]) == ("planned", True)
+    assert (plan["status"], plan["ended"]) == ("planned", "interrupted")
     assert plan["evaluations"] < 10_000
     _replays(plan, SCENARIO)
     captured = capsys.readouterr()
@@ -283,8 +280,9 @@ def test_ctrl_c_while_a_plan_is_written_comes_too_late(monkeypatch, scenario_fil
 
 
 def test_ctrl_c_before_a_plan_leaves_none(monkeypatch, scenario_file, law_file, tmp_path):
-    monkeypatch.setattr(Watch, "of", lambda self, law: signal.raise_signal(signal.SIGINT))
-    assert _run("plan", scenario_file(), "--out", tmp_path / "out", "--law", law_file) == 130
+    _interrupted(monkeypatch, lambda report: report.status == "not_found")
+    late = scenario_file(time_limit=2.6)
+    assert _run("plan", late, "--out", tmp_path / "out", "--law", law_file) == 130
     assert not (tmp_path / "out" / "plan.json").exists()
 
 
