@@ -201,8 +201,8 @@ def _verdict(scenario: Scenario) -> Reachability:
     straight = np.hypot(dx, dy) / top_speed(scenario) + np.pi / max(map(abs, scenario.turn_limits))
     if verdict.status == "unreachable" or scenario.time_limit >= 2.0 * straight:
         return verdict
-    least = lower_bound(scenario)
-    if least * (1.0 - ROUNDING) <= scenario.time_limit:
+    least = lower_bound(scenario, enough=scenario.time_limit * (1.0 + ROUNDING))
+    if least <= scenario.time_limit * (1.0 + ROUNDING):
         return verdict
     return Reachability(
         "unreachable",
