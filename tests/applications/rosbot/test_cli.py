@@ -156,6 +156,12 @@ def test_the_same_seed_gives_the_same_controls(scenario_file, law_file, tmp_path
     assert plans[0]["schedule"] == plans[1]["schedule"]
 
 
+def test_a_deadline_ends_the_search_with_what_is_there(scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file, "--deadline", "0.001") in (0, 4)
+    assert json.loads((out / "plan.json").read_text())["ended"] == "deadline"
+
+
 @pytest.mark.slow
 def test_a_plan_needs_no_law_of_one_s_own(scenario_file, tmp_path):
     assert _run("plan", scenario_file(), "--out", tmp_path / "out") == 0
