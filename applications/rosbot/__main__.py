@@ -89,6 +89,13 @@ def synthesize(
 @click.option("--out", type=PATH, required=True, help="Folder for plan.json and its picture.")
 @click.option("--law", "law_file", metavar="LAW.json", type=PATH, help="[default: the law that comes along]")
 @click.option(
+    "--via",
+    type=(float, float, float),
+    multiple=True,
+    metavar="X Y TOLERANCE",
+    help="A place (m) to pass on the way; repeatable, in their order.",
+)
+@click.option(
     "--deadline",
     type=click.FloatRange(min=0.0, min_open=True),
     help="Seconds by the clock, after which the best plan so far is taken: not the same one every time.",
@@ -96,7 +103,13 @@ def synthesize(
 @seed_option()
 @threads_option
 def plan(
-    scenario_file: Path, out: Path, law_file: Path | None, deadline: float | None, seed: int, threads: int
+    scenario_file: Path,
+    out: Path,
+    law_file: Path | None,
+    via: tuple[tuple[float, float, float], ...],
+    deadline: float | None,
+    seed: int,
+    threads: int,
 ) -> int:
     """Stage 2: plan for a scenario.
 
@@ -109,12 +122,15 @@ def plan(
         from applications.rosbot.show import print_plans, read_plan
         from applications.rosbot.stabilizer import default_law
         from applications.rosbot.stages import load_steering_law, run_plan
-    name = read_scenario(scenario_file).name  # and every complaint about it before anything is written
+        from applications.rosbot.through import check_via
+    scenario = read_scenario(scenario_file)  # and every complaint about it before anything is written
+    if via:
+        check_via(scenario, via)
     law = load_steering_law(law_file) if law_file else default_law()
     effort = Effort(deadline=deadline or inf)
-    path = run_plan(begin(out, seed), scenario_file, law, seed=seed, effort=effort, threads=threads)
+    path = run_plan(begin(out, seed), scenario_file, law, seed=seed, effort=effort, threads=threads, via=via)
     made = read_plan(path)
-    print_plans([(name, made)])
+    print_plans([(scenario.name, made)])
     if made.ended == "interrupted":
         raise KeyboardInterrupt
     return EXIT_CODES[made.status]
