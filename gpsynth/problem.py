@@ -154,6 +154,11 @@ class Problem:
             object.__setattr__(self, name, value)
         _check(self)
 
+    def of(self, rows: Sequence[int]) -> "Problem":
+        """The same problem from these of its starts, by number, each under its draw."""
+        draws = None if self.draws is None else self.draws.of(rows)
+        return replace(self, starts=self.starts[list(rows)], draws=draws)
+
     @cached_property
     def rates(self) -> Program:
         """Derivatives of the states and the running cost; inputs: states, controls, <state>_goal, t.
