@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from applications.rosbot.bounds import lower_bound
+from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.model import reached
 from applications.rosbot.reachability import reachability
 from applications.rosbot.replay import Replay, replay
@@ -41,6 +42,7 @@ class PlanReport:
     plan: Plan | None = None
     law: Law | None = None
     replay: Replay | None = None  # by the simulator that shares nothing with the planner's
+    certificate: Certificate | None = None  # for the path between its samples
     history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
 
     @property
@@ -68,9 +70,10 @@ def plan_scenario(
     began = time.perf_counter()
     problems = _problems(scenario, laws)
     at_rest = replay(scenario, np.empty((0, 2)), PERIOD)
-    if at_rest.solves:
+    stay = certify(scenario, np.empty((0, 2)), PERIOD)
+    if at_rest.solves and stay.is_clear:
         report = _arrived(scenario, problems[0][1], at_rest, seed)
-        return replace(report, planning_time=time.perf_counter() - began)
+        return replace(report, certificate=stay, planning_time=time.perf_counter() - began)
     verdict = reachability(scenario)
     report = PlanReport("unreachable", verdict.reason, 0.0, 0, lower_bound(scenario), seed)
     if verdict.status != "unreachable":
@@ -144,12 +147,15 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
 
 
 def _verified(scenario: Scenario, swarms: Sequence[Swarm], report: PlanReport) -> PlanReport:
-    """The fastest plan that the other simulator confirms, or that there is none."""
+    """The fastest plan that the other simulator confirms and the certificate clears, or that there is none."""
     plans = [swarm.plan for swarm in swarms]
     evaluations = sum(plan.evaluations for plan in plans)
     for swarm in sorted(swarms, key=lambda swarm: swarm.plan.rank):
         check = replay(scenario, swarm.plan.trajectory.u, PERIOD) if swarm.plan.is_free else None
-        if check is not None and check.solves:
+        if check is None or not check.solves:
+            continue
+        proof = certify(scenario, swarm.plan.trajectory.u, PERIOD, until=check.arrival_time)
+        if proof.is_clear:
             return replace(
                 report,
                 status="planned",
@@ -158,6 +164,7 @@ def _verified(scenario: Scenario, swarms: Sequence[Swarm], report: PlanReport) -
                 plan=swarm.plan,
                 law=swarm.law,
                 replay=check,
+                certificate=proof,
                 history=_improvements(plans),
             )
     reason = (

@@ -76,8 +76,19 @@ def test_public_scenarios_are_solved_or_unreachable(public):
     assert report.status == ("planned" if public.expect_feasible else "unreachable")
     if report.replay is not None:
         assert report.replay.solves
+        _proves(report)
     else:
+        assert report.certificate is None
         assert "shut the goal off" in report.reason
+
+
+def _proves(report):
+    """The certificate clears the plan, and is within what the replay's samples may miss."""
+    proof, seen = report.certificate, report.replay.clearance
+    assert proof.is_clear
+    assert proof.clearance <= seen
+    assert seen == np.inf or seen - proof.clearance <= 2.5e-4  # half of 1 ms at 0.5 m/s
+    assert plan_document(report)["certificate"]["room"] == proof.room
 
 
 @pytest.mark.parametrize("direction", [1.0, -1.0])
