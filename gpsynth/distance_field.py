@@ -5,6 +5,7 @@ point of a square that is nearest to a node is a node itself, so the distances o
 nodes: a Euclidean distance transform (Felzenszwalb & Huttenlocher 2012) gives them without any error.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,6 +24,8 @@ Cells = npt.NDArray[np.bool_]
 @dataclass(frozen=True, eq=False)
 class DistanceField:
     """Squared distances of a square grid's nodes from what is occupied; inside it, from what is not, negated.
+
+    All that is occupied must lie within the grid.
 
     Raises ProblemError if these are no numbers, or fewer than two rows or columns.
     """
@@ -88,13 +91,29 @@ def field_of_cells(
 ) -> DistanceField:
     """The field of occupied cells (r, c) of a width of `spacing` (m) from `corner` on, row 0 at the least y.
 
-    With `parts` each cell is cut into so many by so many first. Beyond the grid nothing is occupied.
+    With `parts` each cell is cut into so many by so many first.
     """
     cells = np.repeat(np.repeat(occupied, parts, axis=0), parts, axis=1)
     width = spacing / parts
     outside, inside = _squares_from(_corners(cells)), _squares_from(_corners(~np.pad(cells, 1))[1:-1, 1:-1])
     squares = np.where(np.isinf(outside), FAR**2, width**2 * (outside - inside))
     return DistanceField(squares, np.asarray(corner, dtype=np.float64), width)
+
+
+def squares_of_shapes(nodes_of: DistanceField, segments: Floats, polygons: Sequence[Floats]) -> Floats:
+    """Squared distances (r, c) of a field's nodes from segments (s, 4) and polygons (n, 2), negative inside of these.
+
+    Filled is what has an odd number of edges of a polygon to its right.
+    """
+    from gpsynth.kernels.field import squares_to_edges
+
+    around = [np.hstack([corners, np.roll(corners, -1, axis=0)]) for corners in polygons]
+    numbers = [np.full(len(edges), number) for number, edges in enumerate(around)]
+    edges = frozen(np.vstack([segments, *around]))
+    owners = frozen(np.concatenate([np.full(len(segments), -1), *numbers]).astype(np.int32))
+    squares = np.empty_like(nodes_of.squares)
+    squares_to_edges(edges, owners, nodes_of.grid, squares)
+    return squares
 
 
 def _corners(cells: Cells) -> Cells:

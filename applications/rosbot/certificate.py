@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, advance, arcs
+from applications.rosbot.chords import Chords, chords_of, gaps_of_circles, gaps_of_room
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
@@ -28,7 +29,7 @@ class Certificate:
 
     clearance: float  # m, at least, between the body and every obstacle; infinity without obstacles
     room: float  # m, at least, between the robot's center and the bounds; infinity without bounds
-    obstacle: int | None  # which one is nearest
+    obstacle: int | None  # which circle is nearest; None if it is the room
     time: float | None  # s, when the piece begins that is nearest to it
 
     @property
@@ -58,9 +59,31 @@ def certify(
     begins = np.cumsum(durations) - durations
     path = arcs(scenario.start, controls, np.clip(until - begins, 0.0, durations))
     moves = np.any(scenario.circles[:, 2:4] != 0.0, axis=1)
-    found = [_at_rest(path, scenario, np.flatnonzero(~moves)), _moving(path, scenario, np.flatnonzero(moves))]
+    chords = chords_of(path, scenario.body)
+    found = [_in_room(chords, scenario)]
+    if scenario.is_round:
+        found += [_at_rest(path, scenario, np.flatnonzero(~moves))]
+        found += [_moving(path, scenario, np.flatnonzero(moves))]
+    else:
+        found += [_turning(chords, scenario.circles)]
     nearest = min(found, key=lambda each: each.gap)
     return Certificate(nearest.gap, _room(path, scenario.bounds), nearest.obstacle, nearest.time)
+
+
+def _in_room(chords: Chords, scenario: Scenario) -> _Nearest:
+    """The least distance from the room."""
+    gaps = gaps_of_room(chords, scenario)
+    piece = int(np.argmin(gaps))
+    return _Nearest(float(gaps[piece]), None, float(chords.times[piece]) if scenario.room else None)
+
+
+def _turning(chords: Chords, circles: Floats) -> _Nearest:
+    """The least distance of a body that turns from circles."""
+    if not len(circles):
+        return _Nearest()
+    gaps = gaps_of_circles(chords, circles)
+    piece, index = np.unravel_index(np.argmin(gaps), gaps.shape)
+    return _Nearest(float(gaps[piece, index]), int(index), float(chords.times[piece]))
 
 
 def _at_rest(path: Arcs, scenario: Scenario, which: Indices) -> _Nearest:

@@ -102,8 +102,15 @@ def problem_of(scenario: Scenario, law: Law) -> Problem:
         period=PERIOD,
         features=law.features,
         reached=reached(*shrunk),
-        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
+        obstacles=_obstacles(scenario),
     )
+
+
+def _obstacles(scenario: Scenario) -> Obstacles:
+    if scenario.is_round:
+        return Obstacles(scenario.circles, scenario.bounds, scenario.radius, field=scenario.field)
+    position = ("x", "y", "theta")
+    return Obstacles(scenario.circles, scenario.bounds, 0.0, position, scenario.body, scenario.field)
 
 
 def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, Law]]:
