@@ -24,6 +24,9 @@ class Rows(NamedTuple):
     end: int  # 1, s
     diverged: int  # 1
     cost: int  # 1
+    before: int  # 1, the arrival measure at the tick before
+    share: int  # 1, of the last period, that lies behind the arrival
+    limit: int  # 1, of the toll
     near: int  # 10, clearance, exposure, depth and seven rows of scratch
     plant: int  # q, parameters of the plant
     error: int  # n or 0, of the measured state
@@ -96,6 +99,23 @@ class World(NamedTuple):
     grid: Floats  # (3,) x, y of its first node and its spacing
 
 
+class Toll(NamedTuple):
+    """The least that a lane will have cost its planner, and how much it may: a lane that cannot keep its limit ends.
+
+    If the lane arrives no earlier than at s, it costs rate s + late max(0, s - due), and what exposure and depth cost.
+    """
+
+    limits: Floats  # (L,), or (0,): none
+    due: float  # s
+    rate: float  # 1/s
+    late: float  # 1/s
+    pace: float  # s/m: no state is nearer to its goal by a meter any sooner; 0: unknown
+    slack: float  # m, how near a goal counts as arrival
+    entry: float  # where there is any exposure
+    exposure: float  # 1/s
+    depth: float  # 1/(m s)
+
+
 _INTEGER, _NUMBER, _FLAG = types.int64, types.float64, types.boolean
 ROWS = types.NamedUniTuple(_INTEGER, len(Rows._fields), Rows)
 CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, INTEGERS, INTEGERS), Code)
@@ -103,6 +123,7 @@ LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
 CONDITIONS = types.NamedTuple((MATRIX, INTEGERS, _INTEGER, VECTOR, TENSOR, INTEGERS), Conditions)
 CLOCK = types.NamedTuple((VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER, _NUMBER), Clock)
 WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER, MATRIX, MATRIX, VECTOR), World)
+TOLL = types.NamedTuple((VECTOR, *[_NUMBER] * 8), Toll)
 
 Group = TypeVar("Group", bound=tuple[Any, ...])
 Array = TypeVar("Array", bound=np.ndarray[Any, Any])
