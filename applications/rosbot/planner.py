@@ -217,7 +217,7 @@ def _followed(
 
 
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:
-    """The report with what was found, if it is faster, the other simulator confirms it and the certificate clears it."""
+    """The report with what was found, if it is faster, replayed as well, and its certificate is clear."""
     scenario, plan = report.scenario, found.plan
     if plan.is_free and (report.plan is None or plan.arrival_time < report.plan.arrival_time):
         check = replay(scenario, plan.trajectory.u, PERIOD)
