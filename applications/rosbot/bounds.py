@@ -30,7 +30,7 @@ def lower_bound(scenario: Scenario) -> float:
     lengths = [least, _reeds_shepp(scenario, least)]
     discs = scenario.discs
     gaps = np.hypot(*(discs[:, :2] - scenario.goal[:2]).T) - discs[:, 2]
-    if scenario.is_static and gaps.min(initial=np.inf) > position:
+    if scenario.room is None and scenario.is_static and gaps.min(initial=np.inf) > position:
         lengths += [route.length - position for route in routes(scenario, count=1)]
     return float(max(lengths)) / top_speed(scenario)
 

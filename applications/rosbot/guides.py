@@ -149,7 +149,10 @@ def _blockages(scenario: Scenario, samples: Samples) -> Floats:
     room = np.minimum(places - low, high - places).min(axis=1)
     discs = scenario.discs
     gaps = np.hypot(*(places[:, None] - discs[:, :2]).transpose(2, 0, 1)) - discs[:, 2]
-    depth = -np.minimum(room, gaps.min(axis=1, initial=np.inf))
+    room = np.minimum(room, gaps.min(axis=1, initial=np.inf))
+    if scenario.field is not None:
+        room = np.minimum(room, scenario.field.at(places) - scenario.radius)
+    depth = -room
     counted = np.concatenate([[0.0], np.cumsum(np.where(depth > 0.0, 0.1 + depth, 0.0))])
     blocked: Floats = SPACING * np.diff(counted[samples.bounds])
     return blocked
