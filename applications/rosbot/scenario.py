@@ -87,10 +87,13 @@ class Scenario:
 
     @cached_property
     def field(self) -> DistanceField | None:
-        """The distance field of the room."""
+        """The distance field of the room; start, goal and circles lie within its grid."""
         if self.room is None:
             return None
-        return self.room.field(float(np.clip(0.2 * self.body[:, 2].min(), FINE, COARSE)))
+        x, y, radius = self.discs.T
+        places = [self.start[:2], self.goal[:2], *np.column_stack([x - radius, y - radius])]
+        places += list(np.column_stack([x + radius, y + radius]))
+        return self.room.field(float(np.clip(0.2 * self.body[:, 2].min(), FINE, COARSE)), np.array(places))
 
 
 def _shaped(name: str, value: object, shape: tuple[int, ...]) -> Floats:
