@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from applications.rosbot.map_copy import copy_map
 from applications.rosbot.model import STATES
 from applications.rosbot.plan_file import write_plan
 from applications.rosbot.planner import Effort, PlanReport, plan_scenario
@@ -64,6 +65,7 @@ def run_plan(
         report = plan_scenario(scenario, [law], seed=seed, effort=effort, threads=threads)
     _log(run, f"plan {scenario.name}", report)
     path = run.folder / plan_file
+    copy_map(scenario_file, run.folder)
     write_bytes(scenario_beside(path), source)
     write_plan(report, path)
     redraw(path)
