@@ -15,7 +15,7 @@ from applications.rosbot.polar_law import HOT, SATURATING, polar_law
 from applications.rosbot.replay import replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.seeds import along, nearby, schedules_along
+from applications.rosbot.seeds import along, nearby, repeated, schedules_along
 from gpsynth.errors import ScenarioError
 from gpsynth.planning import PlanSettings
 from gpsynth.seeds import stream
@@ -87,6 +87,50 @@ def test_what_shuts_the_way_of_a_previous_plan_is_driven_around(report):
     assert not replay(blocked, report.plan.trajectory.u[6:], PERIOD).solves
     again = plan_scenario(blocked, [law()], effort=QUICK, previous=report, elapsed=6 * PERIOD)
     assert again.replay.solves
+
+
+def test_every_report_on_the_way_is_replayed_and_no_worse_than_the_one_before():
+    seen = []
+    last = plan_scenario(scene(), [law()], seed=1, effort=QUICK, callback=seen.append)
+    found = [each for each in seen if each.status == "planned"]
+    assert len(found) > 3
+    assert all(replay(scene(), each.plan.trajectory.u, PERIOD).solves for each in found)
+    times = [each.plan.arrival_time for each in found]
+    assert times == sorted(times, reverse=True)
+    assert last.plan.arrival_time == times[-1]
+    assert last.ended == "complete"
+
+
+def test_the_callback_ends_the_search_with_the_plan_it_was_shown(report):
+    first = plan_scenario(
+        scene(), [law()], seed=1, effort=QUICK, callback=lambda each: each.status == "planned"
+    )
+    assert (first.status, first.ended) == ("planned", "callback")
+    assert first.replay.solves
+    assert first.evaluations < report.evaluations / 3
+
+
+def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
+    few = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, rollouts=300))
+    assert (few.status, few.ended) == ("planned", "rollouts")
+    assert 300 <= few.evaluations < report.evaluations
+    now = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=0.0))
+    assert now.ended == "deadline"
+    assert now.evaluations < 300
+
+
+def test_an_interrupted_search_gives_the_best_plan_so_far():
+    def interrupt(report):
+        if report.status == wanted:
+            raise KeyboardInterrupt
+
+    wanted = "planned"
+    stopped = plan_scenario(scene(), [law()], seed=1, effort=QUICK, callback=interrupt)
+    assert (stopped.status, stopped.ended) == ("planned", "interrupted")
+    assert stopped.replay.solves
+    wanted = "not_found"
+    with pytest.raises(KeyboardInterrupt):
+        plan_scenario(scene(time_limit=3.0), [law()], effort=QUICK, callback=interrupt)
 
 
 def test_public_scenarios_are_solved_or_unreachable(public):
@@ -229,7 +273,7 @@ def test_a_schedule_along_a_guide_takes_its_time_and_points_at_its_cusps():
 
 def test_schedules_repeat_the_guides_with_noise():
     guides = direct_guides(scene())[:2]
-    schedules = schedules_along(guides, 4, 5, stream(1))
+    schedules = repeated(schedules_along(guides, 4), 5, stream(1))
     assert len(schedules) == 5
     assert np.array_equal(schedules[1].points, along(guides[1], 4).points)
     assert not np.array_equal(schedules[2].points, schedules[0].points)
