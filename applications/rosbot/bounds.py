@@ -3,6 +3,7 @@
 import numpy as np
 
 from applications.rosbot.guides import top_speed
+from applications.rosbot.model import FAMILY
 from applications.rosbot.reeds_shepp import distance
 from applications.rosbot.replay import SLACK
 from applications.rosbot.routes import routes
@@ -70,4 +71,6 @@ def _tolerance(scenario: Scenario) -> tuple[float, float]:
 
 
 def _radius(scenario: Scenario) -> float:
-    return top_speed(scenario) / max(map(abs, scenario.turn_limits))
+    """A radius (m) that no robot turns more sharply than at top speed."""
+    gain = FAMILY["k_omega"][3] if scenario.model == "dynamic_unicycle" else 1.0
+    return max(top_speed(scenario) / (gain * max(map(abs, scenario.turn_limits))), scenario.turning_radius)

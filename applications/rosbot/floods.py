@@ -98,7 +98,8 @@ def _narrow(flood: _Flood, radius: float) -> str:
 def _proved(scenario: Scenario, flood: _Flood, field: DistanceField) -> Verdict:
     standing = scenario.speed_limits[0] <= 0.0 <= scenario.speed_limits[1]
     turning = scenario.turn_limits[0] <= 0.0 <= scenario.turn_limits[1]
-    if not (scenario.is_static and scenario.is_round and standing and turning):
+    nimble = scenario.model == "unicycle" and standing and turning
+    if not (scenario.is_static and scenario.is_round and nimble):
         return (
             "undecided",
             "a route may be free for a round robot that stands and turns among what is at rest",

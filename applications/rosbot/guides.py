@@ -124,7 +124,7 @@ def _combined(
 def _radius(scenario: Scenario) -> float:
     """The radius (m) of a turn at top speed that is possible to both sides, if there is one."""
     right, left = map(abs, scenario.turn_limits)
-    return top_speed(scenario) / (min(right, left) or max(right, left))
+    return max(top_speed(scenario) / (min(right, left) or max(right, left)), scenario.turning_radius)
 
 
 def _pace(scenario: Scenario, sense: float) -> float:

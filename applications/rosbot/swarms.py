@@ -11,9 +11,10 @@ from applications.rosbot.guides import Guide, direct_guides, guides_along, top_s
 from applications.rosbot.routes import Route
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import anywhere, nearby, repeated, schedules_along
+from applications.rosbot.vehicles import pose_plans
 from gpsynth.arrays import Floats
 from gpsynth.law import Law
-from gpsynth.planning import Particles, Plan, PlanSettings, plans
+from gpsynth.planning import Particles, Plan, PlanSettings
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedules
 from gpsynth.seeds import stream
@@ -147,7 +148,7 @@ class Search:
         for task in tasks:
             problem, law = self.problems[task.team]
             settings = replace(task.settings, top_speed=top_speed(self.scenario))
-            for plan in plans(
+            for plan in pose_plans(
                 problem,
                 law,
                 settings,
