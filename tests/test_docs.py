@@ -101,7 +101,9 @@ def test_the_obstacles_of_the_plants_page_run_as_printed():
     (block,) = [text for text in blocks("plants.md", "python") if "field_of_cells" in text]
     place: dict[str, object] = {}
     exec(compile(block, "plants.md", "exec"), place)
-    gap = place["obstacles"].gaps(np.array([[0.0, 0.0, 0.0]]))[0]  # to the cells from (0.5, -0.5) to (0.55, 0.5)
+    gap = place["obstacles"].gaps(np.array([[0.0, 0.0, 0.0]]))[
+        0
+    ]  # to the cells from (0.5, -0.5) to (0.55, 0.5)
     assert 0.34 < gap <= 0.35
 
 

@@ -1,9 +1,10 @@
 """Plans for scenarios: what can be reached is searched for, and what is found is replayed by another simulator."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
@@ -11,8 +12,9 @@ import numpy as np
 from applications.rosbot.bounds import lower_bound
 from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.following import follow
+from applications.rosbot.guides import top_speed
 from applications.rosbot.model import reached
-from applications.rosbot.reachability import reachability
+from applications.rosbot.reachability import Reachability, reachability
 from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
@@ -30,8 +32,19 @@ from gpsynth.simulation import Trajectory
 __all__ = ["PERIOD", "Callback", "Effort", "PlanReport", "plan_scenario", "problem_of"]
 
 PERIOD = 0.05  # s of the control: 2.5 cm at 0.5 m/s; twice as long costs time at every switch, half as long computing
-Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
 INSIDE = (0.001, 0.002)  # m, rad: how far within the tolerance a plan arrives, so that no rounding undoes it
+ROUNDING = 1e-9  # share of a bound that its arithmetic may be off by
+
+Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
+WHEN: Mapping[Ended, str] = MappingProxyType(
+    {
+        "complete": "",
+        "callback": ", when the search was ended",
+        "rollouts": ", all that were allowed",
+        "deadline": ", when the deadline came",
+        "interrupted": ", when the search was interrupted",
+    }
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +116,7 @@ def plan_scenario(
         report = watch.improved(report, _followed(report, previous.plan, previous.law, elapsed, effort))
         if report.status == "planned" or report.ended != "complete":
             return report
-    verdict = reachability(scenario)
+    verdict = _verdict(scenario)
     if verdict.status == "unreachable":
         return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
     ways = routes(scenario, margin=effort.scouts.margin)
@@ -139,8 +152,9 @@ class _Watch:
         return self.stamped(report)
 
     def stamped(self, report: PlanReport) -> PlanReport:
-        """The report with the time that it took."""
-        return replace(report, planning_time=time.perf_counter() - self.began)
+        """The report with the time that it took and, without a plan, the reason."""
+        reason = _not_found(report) if report.status == "not_found" else report.reason
+        return replace(report, reason=reason, planning_time=time.perf_counter() - self.began)
 
     def _ended(self, report: PlanReport) -> Ended:
         if self.callback is not None and self.callback(self.stamped(report)):
@@ -200,6 +214,21 @@ def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, La
     return [(problem_of(scenario, law), law) for law in adapted]
 
 
+def _verdict(scenario: Scenario) -> Reachability:
+    """Whether the goal can be reached, and where time is scarce, whether any plan is as fast as the time limit asks."""
+    verdict, (dx, dy, _) = reachability(scenario), scenario.goal - scenario.start
+    straight = np.hypot(dx, dy) / top_speed(scenario) + np.pi / max(map(abs, scenario.turn_limits))
+    if verdict.status == "unreachable" or scenario.time_limit >= 2.0 * straight:
+        return verdict
+    least = lower_bound(scenario, enough=scenario.time_limit * (1.0 + ROUNDING))
+    if least <= scenario.time_limit * (1.0 + ROUNDING):
+        return verdict
+    return Reachability(
+        "unreachable",
+        f"too late: no plan arrives before {least:.4g} s, and the time limit is {scenario.time_limit:g} s",
+    )
+
+
 @lru_cache(maxsize=32)
 def _carried(law: Law, plant: Plant) -> Law:
     return law_for(law, plant)
@@ -242,26 +271,29 @@ def _followed(
 
 
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:
-    """The report with what was found, if it is faster, replayed as well, and its certificate is clear."""
+    """The report with what was found, if that is faster, confirmed by the other simulator and cleared."""
     scenario, plan = report.scenario, found.plan
-    if plan.is_free and (report.plan is None or plan.arrival_time < report.plan.arrival_time):
-        controls = steered(scenario, plan.trajectory.u)
-        check = replay(scenario, controls, PERIOD)
-        proof = certify(scenario, controls, PERIOD, until=check.arrival_time)
-        if check.solves and proof.is_clear:
-            return replace(
-                report,
-                status="planned",
-                reason="",
-                plan=plan,
-                law=found.law,
-                replay=check,
-                certificate=proof,
-                history=(*report.history, (report.evaluations, plan.arrival_time)),
-            )
-    if report.status == "planned":
+    if not plan.is_free or (report.plan is not None and plan.arrival_time >= report.plan.arrival_time):
         return report
-    reason = (
-        f"no collision-free plan within {scenario.time_limit:g} s was found; the goal may still be reachable"
+    controls = steered(scenario, plan.trajectory.u)
+    check = replay(scenario, controls, PERIOD)
+    proof = certify(scenario, controls, PERIOD, until=check.arrival_time)
+    if not (check.solves and proof.is_clear):
+        return report
+    return replace(
+        report,
+        status="planned",
+        reason="",
+        plan=plan,
+        law=found.law,
+        replay=check,
+        certificate=proof,
+        history=(*report.history, (report.evaluations, plan.arrival_time)),
     )
-    return replace(report, reason=reason)
+
+
+def _not_found(report: PlanReport) -> str:
+    return (
+        f"no collision-free plan within {report.scenario.time_limit:g} s was found in {report.evaluations} rollouts"
+        f"{WHEN[report.ended]}; the goal may still be reachable"
+    )
