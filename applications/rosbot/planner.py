@@ -252,6 +252,7 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
         arrival_time=0.0,
         clearance=at_rest.clearance,
         is_admissible=True,
+        value=0.0,
         cost=0.0,
         evaluations=0,
         history=(),
@@ -273,7 +274,7 @@ def _followed(
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:
     """The report with what was found, if that is faster, confirmed by the other simulator and cleared."""
     scenario, plan = report.scenario, found.plan
-    if not plan.is_free or (report.plan is not None and plan.arrival_time >= report.plan.arrival_time):
+    if not plan.is_free or (report.plan is not None and plan.rank >= report.plan.rank):
         return report
     controls = steered(scenario, plan.trajectory.u)
     check = replay(scenario, controls, PERIOD)

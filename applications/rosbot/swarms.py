@@ -14,7 +14,7 @@ from applications.rosbot.seeds import anywhere, nearby, repeated, schedules_alon
 from applications.rosbot.vehicles import pose_plans
 from gpsynth.arrays import Floats
 from gpsynth.law import Law
-from gpsynth.planning import Particles, Plan, PlanSettings
+from gpsynth.planning import Particles, Plan, PlanSettings, Weights
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedules
 from gpsynth.seeds import stream
@@ -40,6 +40,7 @@ class Effort:
     refined: int = 2
     added: int = 2  # points that refinement adds
     nearness: float = 0.3  # noise of refinement's first schedules, as a share of the scouts'
+    weights: Weights = Weights()  # of what counts beside time
     attempts: int = 3  # with other random numbers and twice the time budget, while nothing is found
     rollouts: float = inf  # after which the best plan so far is given
     deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
@@ -147,7 +148,7 @@ class Search:
         swarms: list[Swarm] = []
         for task in tasks:
             problem, law = self.problems[task.team]
-            settings = replace(task.settings, top_speed=top_speed(self.scenario))
+            settings = replace(task.settings, top_speed=top_speed(self.scenario), weights=self.effort.weights)
             for plan in pose_plans(
                 problem,
                 law,
@@ -162,7 +163,7 @@ class Search:
                 yield Found(plan, law, spent + plan.evaluations)
             swarms += task.swarms(plan.particles)
             spent += plan.evaluations
-            budget = min(budget, plan.arrival_time) if plan.is_free else budget
+            budget = min(budget, plan.value) if plan.is_free else budget
         return swarms, budget, spent
 
     def _scouts(self) -> Iterator[Task]:

@@ -4,5 +4,15 @@ from gpsynth.planning.certificate import certified_clearance
 from gpsynth.planning.objective import Objective
 from gpsynth.planning.rounds import Particles, Plan, plan, plans
 from gpsynth.planning.settings import PlanSettings
+from gpsynth.planning.weights import Weights
 
-__all__ = ["Objective", "Particles", "Plan", "PlanSettings", "certified_clearance", "plan", "plans"]
+__all__ = [
+    "Objective",
+    "Particles",
+    "Plan",
+    "PlanSettings",
+    "Weights",
+    "certified_clearance",
+    "plan",
+    "plans",
+]
