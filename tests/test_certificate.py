@@ -1,5 +1,7 @@
 """Clearance proved for the paths of any plant, against an adaptive integrator sampled between the ticks."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -7,6 +9,7 @@ from scipy.integrate import solve_ivp
 from applications.rosbot.certificate import certify
 from applications.rosbot.model import dynamic_unicycle, unicycle
 from applications.rosbot.scenario import Scenario
+from gpsynth.distance_field import field_of_cells
 from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError
 from gpsynth.planning import certified_clearance
@@ -121,3 +124,28 @@ def test_a_plant_of_which_nothing_is_known_has_no_certificate():
     x = np.column_stack([np.zeros(3), [-0.01, 0.0, 0.01]])
     trajectory = Trajectory(odd, PERIOD * np.arange(3), x, np.zeros((2, 2)), x, np.inf, 0.0, np.inf)
     assert certified_clearance(problem_of(odd, [[1.0, 1.0, 0.0, 0.0, 0.1]]), trajectory) == -np.inf
+
+
+def test_a_body_and_a_distance_field_are_proved_clear_too():
+    body = np.array([[0.2, 0.0, 0.08], [-0.1, 0.1, 0.1]])
+    for seed in range(6):
+        trajectory, fine = driven(unicycle((-0.5, 0.5), (-2.0, 2.0)), seed)
+        turned = trajectory.x[:-1, 2:] + trajectory.u[:, 1:] * np.linspace(0.0, PERIOD, FINE + 1)
+        theta = np.concatenate([[0.0], turned.ravel()])
+        cells = np.random.default_rng(seed).random((80, 80)) < 0.01
+        cells[30:50, 30:50] = False
+        low = -2.0 + 0.05 * np.argwhere(cells)[:, ::-1]
+        exact = np.inf
+        for ahead, left, radius in body:
+            x = fine[::20, 1] + (ahead * np.cos(theta) - left * np.sin(theta))[::20]
+            y = fine[::20, 2] + (ahead * np.sin(theta) + left * np.cos(theta))[::20]
+            places = np.column_stack([x, y])[:, np.newaxis]
+            beyond = np.maximum(np.maximum(low - places, places - low - 0.05), 0.0)
+            exact = min(exact, np.min(np.hypot(beyond[..., 0], beyond[..., 1])) - radius)
+        field = field_of_cells(cells, (-2.0, -2.0), 0.05, parts=2)
+        obstacles = Obstacles(footprint=body, position=("x", "y", "theta"), field=field)
+        problem = problem_of(trajectory.plant, [], obstacles=replace(obstacles, field=None))
+        object.__setattr__(problem, "obstacles", obstacles)  # also where the start is not free
+        proved = certified_clearance(problem, trajectory)
+        assert proved <= exact + 1e-6
+        assert exact < 0.0 or exact - proved < 0.03

@@ -244,7 +244,7 @@ WRONG_OBSTACLES = {
     "bounds_nan": ({"bounds": [0.0, NAN, 0.0, 1.0]}, "bounds holds NaN"),
     "position_same": ({"position": ("x", "x")}, "position names two different states"),
     "position_one": ({"position": ["x"]}, "position names two different states"),
-    "position_three": ({"position": ("x", "y", "theta")}, "position names two different states"),
+    "position_four": ({"position": ("x", "y", "theta", "t")}, "position names two different states"),
     "position_text": ({"position": "xy"}, "position names two different states"),
 }
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from applications.rosbot.guides import top_speed
+from applications.rosbot.model import FAMILY
 from applications.rosbot.reeds_shepp import distance
 from applications.rosbot.replay import SLACK
 from applications.rosbot.routes import routes
@@ -31,7 +32,8 @@ def lower_bound(scenario: Scenario, *, enough: float = np.inf) -> float:
     speed, longest = top_speed(scenario), least
     discs = scenario.discs
     gaps = np.hypot(*(discs[:, :2] - scenario.goal[:2]).T) - discs[:, 2]
-    if longest <= enough * speed and scenario.is_static and gaps.min(initial=np.inf) > position:
+    static = scenario.room is None and scenario.is_static
+    if longest <= enough * speed and static and gaps.min(initial=np.inf) > position:
         longest = max([longest, *(route.length - position for route in routes(scenario, count=1))])
     if longest <= enough * speed:
         longest = max(longest, _reeds_shepp(scenario, least))
@@ -73,4 +75,6 @@ def _tolerance(scenario: Scenario) -> tuple[float, float]:
 
 
 def _radius(scenario: Scenario) -> float:
-    return top_speed(scenario) / max(map(abs, scenario.turn_limits))
+    """A radius (m) that no robot turns more sharply than at top speed."""
+    gain = FAMILY["k_omega"][3] if scenario.model == "dynamic_unicycle" else 1.0
+    return max(top_speed(scenario) / (gain * max(map(abs, scenario.turn_limits))), scenario.turning_radius)

@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, advance, arcs
+from applications.rosbot.chords import Chords, chords_of, gaps_of_circles, gaps_of_room
+from applications.rosbot.lags import ERROR, nominal_path
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
@@ -28,7 +30,7 @@ class Certificate:
 
     clearance: float  # m, at least, between the body and every obstacle; infinity without obstacles
     room: float  # m, at least, between the robot's center and the bounds; infinity without bounds
-    obstacle: int | None  # which one is nearest
+    obstacle: int | None  # which circle is nearest; None if it is the room
     time: float | None  # s, when the piece begins that is nearest to it
 
     @property
@@ -56,11 +58,42 @@ def certify(
     controls = np.asarray(controls, dtype=np.float64).reshape(-1, 2)
     durations = np.broadcast_to(np.asarray(period, dtype=np.float64), len(controls))
     begins = np.cumsum(durations) - durations
-    path = arcs(scenario.start, controls, np.clip(until - begins, 0.0, durations))
+    kept = np.clip(until - begins, 0.0, durations)
+    lags = scenario.model == "dynamic_unicycle"
+    path = _lagging(scenario, controls, kept) if lags else arcs(scenario.start, controls, kept)
     moves = np.any(scenario.circles[:, 2:4] != 0.0, axis=1)
-    found = [_at_rest(path, scenario, np.flatnonzero(~moves)), _moving(path, scenario, np.flatnonzero(moves))]
+    chords = chords_of(path, scenario.body)
+    found = [_in_room(chords, scenario)]
+    if scenario.is_round and not lags:
+        found += [_at_rest(path, scenario, np.flatnonzero(~moves))]
+        found += [_moving(path, scenario, np.flatnonzero(moves))]
+    else:
+        found += [_turning(chords, scenario.circles)]
     nearest = min(found, key=lambda each: each.gap)
     return Certificate(nearest.gap, _room(path, scenario.bounds), nearest.obstacle, nearest.time)
+
+
+def _lagging(scenario: Scenario, controls: Floats, durations: Floats) -> Arcs:
+    """The path of the nominal robot with lags, in pieces so short that ERROR covers what makes them no arcs."""
+    path = nominal_path(scenario.start, controls, durations)
+    v, omega = (np.maximum(np.abs(each[:-1]), np.abs(each[1:])) for each in (path.v, path.omega))
+    return Arcs(path.times, path.poses, v, omega, np.diff(path.times), ERROR, ERROR)
+
+
+def _in_room(chords: Chords, scenario: Scenario) -> _Nearest:
+    """The least distance from the room."""
+    gaps = gaps_of_room(chords, scenario)
+    piece = int(np.argmin(gaps))
+    return _Nearest(float(gaps[piece]), None, float(chords.times[piece]) if scenario.room else None)
+
+
+def _turning(chords: Chords, circles: Floats) -> _Nearest:
+    """The least distance of a body that turns from circles."""
+    if not len(circles):
+        return _Nearest()
+    gaps = gaps_of_circles(chords, circles)
+    piece, index = np.unravel_index(np.argmin(gaps), gaps.shape)
+    return _Nearest(float(gaps[piece, index]), int(index), float(chords.times[piece]))
 
 
 def _at_rest(path: Arcs, scenario: Scenario, which: Indices) -> _Nearest:

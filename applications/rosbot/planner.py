@@ -19,9 +19,12 @@ from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort, Found, Search
+from applications.rosbot.vehicles import law_for, plant_of, steered, step_of, widened
+from gpsynth.arrays import Floats
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Particles, Plan
+from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
 from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import Trajectory
@@ -66,6 +69,11 @@ class PlanReport:
     def lower_bound(self) -> float:
         """A time (s) below which no plan can be; it takes longer to find than a first plan, so only when asked for."""
         return lower_bound(self.scenario)
+
+    @property
+    def controls(self) -> Floats:
+        """v and omega (m, 2) in every control period of the plan."""
+        return np.empty((0, 2)) if self.plan is None else steered(self.scenario, self.plan.trajectory.u)
 
     @property
     def ratio(self) -> float:
@@ -159,28 +167,38 @@ class _Watch:
 
 def problem_of(scenario: Scenario, law: Law) -> Problem:
     """The scenario as a problem for a law under its limits: least time into the tolerance, a little within its edge."""
+    tolerances = scenario.position_tolerance, scenario.heading_tolerance
     return replace(
-        _like(law, scenario.position_tolerance, scenario.heading_tolerance),
-        starts=scenario.start,
-        goal=scenario.goal,
+        _like(law, *tolerances, step_of(scenario, PERIOD)),
+        starts=widened(scenario.start, law.plant),
+        goal=widened(scenario.goal, law.plant),
         horizon=max(PERIOD, scenario.time_limit - PERIOD),
-        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
+        obstacles=_obstacles(scenario),
     )
 
 
 @lru_cache(maxsize=32)
-def _like(law: Law, position: float, heading: float) -> Problem:
+def _like(law: Law, position: float, heading: float, step: float) -> Problem:
     """A problem with the programs of all problems for this law and tolerance (m, rad): to trace them takes a while."""
     shrunk = max(0.5 * position, position - INSIDE[0]), max(0.5 * heading, heading - INSIDE[1])
+    nowhere = widened(np.zeros(3), law.plant)
     return Problem(
         law.plant,
-        np.zeros(3),
-        np.zeros(3),
-        tolerance=[shrunk[0], shrunk[0], shrunk[1]],
+        nowhere,
+        nowhere,
+        tolerance=[shrunk[0], shrunk[0], shrunk[1], *np.ones(len(nowhere) - 3)],
         period=PERIOD,
+        step=step,
         features=law.features,
         reached=reached(*shrunk),
     )
+
+
+def _obstacles(scenario: Scenario) -> Obstacles:
+    if scenario.is_round:
+        return Obstacles(scenario.circles, scenario.bounds, scenario.radius, field=scenario.field)
+    position = ("x", "y", "theta")
+    return Obstacles(scenario.circles, scenario.bounds, 0.0, position, scenario.body, scenario.field)
 
 
 def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, Law]]:
@@ -192,7 +210,8 @@ def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, La
             raise ScenarioError(
                 f"the law steers {', '.join(law.plant.control_names)}; a scenario needs v, omega"
             )
-    adapted = [_limited(law, scenario.speed_limits, scenario.turn_limits) for law in laws]
+    plant = plant_of(scenario)
+    adapted = [_carried(law, plant) for law in laws]
     return [(problem_of(scenario, law), law) for law in adapted]
 
 
@@ -212,9 +231,8 @@ def _verdict(scenario: Scenario) -> Reachability:
 
 
 @lru_cache(maxsize=32)
-def _limited(law: Law, speed: tuple[float, float], turn: tuple[float, float]) -> Law:
-    low, high = zip(speed, turn, strict=True)
-    return law.with_limits(low, high)
+def _carried(law: Law, plant: Plant) -> Law:
+    return law_for(law, plant)
 
 
 def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanReport:
@@ -222,9 +240,9 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
     stay = Trajectory(
         plant=law.plant,
         t=np.zeros(1),
-        x=scenario.start[np.newaxis],
+        x=widened(scenario.start[np.newaxis], law.plant),
         u=np.empty((0, 2)),
-        target=scenario.goal[np.newaxis],
+        target=widened(scenario.goal[np.newaxis], law.plant),
         arrival=0.0,
         cost=0.0,
         clearance=at_rest.clearance,
@@ -259,8 +277,9 @@ def _confirmed(report: PlanReport, found: Found) -> PlanReport:
     scenario, plan = report.scenario, found.plan
     if not plan.is_free or (report.plan is not None and plan.rank >= report.plan.rank):
         return report
-    check = replay(scenario, plan.trajectory.u, PERIOD)
-    proof = certify(scenario, plan.trajectory.u, PERIOD, until=check.arrival_time)
+    controls = steered(scenario, plan.trajectory.u)
+    check = replay(scenario, controls, PERIOD)
+    proof = certify(scenario, controls, PERIOD, until=check.arrival_time)
     if not (check.solves and proof.is_clear):
         return report
     return replace(

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from applications.rosbot.gaps import gaps_to_circles, gaps_to_room
+from applications.rosbot.lags import nominal_path
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ScenarioError
@@ -40,7 +42,7 @@ def replay(
     controls = np.asarray(controls, dtype=np.float64)
     durations = np.broadcast_to(np.asarray(period, dtype=np.float64), (len(controls),))
     _check(controls, durations)
-    trajectory = drive(scenario.start, controls, durations)
+    trajectory = _driven(scenario, controls, durations)
     errors = trajectory[:, 1:] - scenario.goal
     distance = np.hypot(errors[:, 0], errors[:, 1])
     turn = np.abs(np.remainder(errors[:, 2] + np.pi, 2.0 * np.pi) - np.pi)
@@ -57,6 +59,13 @@ def replay(
         in_time=arrival_time <= scenario.time_limit,
         trajectory=frozen(trajectory),
     )
+
+
+def _driven(scenario: Scenario, controls: Floats, durations: Floats) -> Floats:
+    if scenario.model != "dynamic_unicycle":
+        return drive(scenario.start, controls, durations)
+    path = nominal_path(scenario.start, controls, durations)
+    return np.column_stack([path.times, path.poses])
 
 
 def drive(start: Floats, controls: Floats, durations: Floats) -> Floats:
@@ -85,12 +94,11 @@ def drive(start: Floats, controls: Floats, durations: Floats) -> Floats:
 
 def clearance(scenario: Scenario, trajectory: Floats) -> float:
     """The smallest gap (m) between the robot and the obstacles, moving ones where they then are; inf without any."""
-    t, x, y, _ = trajectory.T
-    gaps = (
-        np.sqrt(np.min((x - cx - vx * t) ** 2 + (y - cy - vy * t) ** 2)) - radius - scenario.radius
-        for cx, cy, vx, vy, radius in scenario.circles
-    )
-    return float(min(gaps, default=np.inf))
+    t, poses = trajectory[:, 0], trajectory[:, 1:]
+    gap = float(gaps_to_circles(scenario.body, scenario.circles, poses, t).min(initial=np.inf))
+    if scenario.room is not None:
+        gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
+    return gap
 
 
 def _passed(trajectory: Floats, via: Floats) -> int:
@@ -106,6 +114,10 @@ def _passed(trajectory: Floats, via: Floats) -> int:
 
 def _in_limits(scenario: Scenario, controls: Floats) -> bool:
     low, high = np.array([scenario.speed_limits, scenario.turn_limits]).T
+    if scenario.model == "car":
+        sharpest = np.abs(controls[:, 0]) / scenario.turning_radius
+        if np.any(np.abs(controls[:, 1]) > sharpest + SLACK):
+            return False
     return bool(np.all((controls >= low - SLACK) & (controls <= high + SLACK)))
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from applications.rosbot.map_copy import copy_map
 from applications.rosbot.model import STATES
 from applications.rosbot.plan_file import plan_document, write_plan
 from applications.rosbot.planner import Effort, PlanReport, plan_scenario
@@ -89,6 +90,7 @@ def run_plan(
     path = run.folder / plan_file
     _keep(report, path)
     for what, work, older in (
+        ("its map", lambda: copy_map(scenario_file, run.folder), None),
         ("its scenario", lambda: write_bytes(scenario_beside(path), source), scenario_beside(path)),
         ("its picture", lambda: redraw(path), path.with_suffix(".png")),
         ("its log", lambda: _log(run, f"plan {scenario.name}", report), None),

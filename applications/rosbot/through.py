@@ -11,6 +11,7 @@ from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort
+from applications.rosbot.vehicles import steered
 from gpsynth.arrays import Floats
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
@@ -23,13 +24,11 @@ ANY_HEADING = 4.0  # rad, more than half a turn
 
 @dataclass(frozen=True, eq=False)
 class _Leg:
-    """What one leg adds: a schedule whose last point is where it leads, and the path at the ticks."""
+    """What one leg adds: a schedule whose last point is where it leads, and the path at the ticks up to there."""
 
     points: Floats  # (k, 3)
     dwell: Floats  # (k,) s; in all as long as the leg
-    poses: Floats  # (N + 1, 3)
-    controls: Floats  # (N, 2)
-    targets: Floats  # (N + 1, 3)
+    path: Trajectory
 
 
 def plan_through(
@@ -77,6 +76,8 @@ def plan_through(
 
 def check_via(scenario: Scenario, via: npt.ArrayLike) -> Floats:
     """The places as an array (m, 3); raises ScenarioError if one cannot be passed."""
+    if scenario.model == "dynamic_unicycle":
+        raise ScenarioError("a leg begins at rest, so via-points are for robots without lags")
     places = np.asarray(via, dtype=np.float64)
     if places.ndim != 2 or places.shape[1] != 3 or not np.all(np.isfinite(places)):
         raise ScenarioError(
@@ -111,38 +112,38 @@ def _leg(found: PlanReport, goal: Floats) -> _Leg:
     return _Leg(
         points=np.vstack([schedule.points, goal]),
         dwell=np.diff(ends, prepend=0.0),
-        poses=path.x,
-        controls=path.u,
-        targets=path.target,
+        path=path,
     )
 
 
 def _later(scenario: Scenario, leg: _Leg) -> Scenario:
     """What is left after a leg: the robot where it is then, circles where they are, less time."""
-    elapsed = PERIOD * len(leg.controls)
+    elapsed = PERIOD * len(leg.path.u)
     circles = scenario.circles.copy()
     circles[:, :2] += elapsed * circles[:, 2:4]
     left = max(scenario.time_limit - elapsed, PERIOD)
-    return replace(scenario, start=leg.poses[-1], circles=circles, time_limit=left)
+    return replace(scenario, start=leg.path.x[-1], circles=circles, time_limit=left)
 
 
 def _joined(report: PlanReport, legs: Sequence[_Leg], via: Floats) -> PlanReport:
     """The legs as one plan, if the other simulator confirms it and the certificate clears it."""
     scenario, last = report.scenario, report.plan
     assert last is not None
-    controls = np.concatenate([leg.controls for leg in legs])
+    paths = [leg.path for leg in legs]
+    raw = np.concatenate([path.u for path in paths])
+    controls = steered(scenario, raw)
     check = replay(scenario, controls, PERIOD, via=via)
     proof = certify(scenario, controls, PERIOD, until=check.arrival_time)
     if not (check.solves and proof.is_clear):
         reason = f"the legs make no plan within {scenario.time_limit:g} s; the goal may still be reachable"
         return replace(report, status="not_found", reason=reason, plan=None, law=None)
-    poses = np.vstack([legs[0].poses[:1], *(leg.poses[1:] for leg in legs)])
+    poses = np.vstack([paths[0].x[:1], *(path.x[1:] for path in paths)])
     trajectory = Trajectory(
         plant=last.trajectory.plant,
         t=PERIOD * np.arange(len(poses), dtype=np.float64),
         x=poses,
-        u=controls,
-        target=np.vstack([legs[0].targets[:1], *(leg.targets[1:] for leg in legs)]),
+        u=raw,
+        target=np.vstack([paths[0].target[:1], *(path.target[1:] for path in paths)]),
         arrival=check.arrival_time,
         cost=check.arrival_time,
         clearance=check.clearance,

@@ -11,6 +11,7 @@ import numpy as np
 
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_number
+from gpsynth.distance_field import DistanceField
 from gpsynth.errors import ProblemError
 from gpsynth.intervals import enclose
 from gpsynth.problem import Problem
@@ -39,15 +40,42 @@ def certified_clearance(
         raise ProblemError(f"error must be finite and at least 0, not {error}")
     if problem.obstacles is None:
         return np.inf
-    names = problem.plant.state_names
-    position = [names.index(name) for name in problem.obstacles.position]
-    places = trajectory.x[:, position]
+    obstacles, names = problem.obstacles, problem.plant.state_names
+    position = [names.index(name) for name in obstacles.position]
+    poses = trajectory.x[:, position]
     bend = _bends(problem, trajectory, error, row)[:, position]
-    rounding = ROUNDING * (np.abs(places).sum(axis=1) + 1.0)
+    rounding = ROUNDING * (np.abs(poses).sum(axis=1) + 1.0)
     lost = error + np.append(np.hypot(bend[:, 0], bend[:, 1]), 0.0) + rounding
-    gaps = [_gap(circle, trajectory.t, places, lost) for circle in problem.obstacles.circles]
-    nearest = min(gaps, default=np.inf) - problem.obstacles.radius
-    return min(nearest, _room(problem.obstacles.bounds, places, lost))
+    nearest = _room(obstacles.bounds, poses[:, :2], lost)
+    for circle in obstacles.body:
+        centers, turned = _turned(circle, poses, bend, error)
+        gaps = [_gap(other, trajectory.t, centers, lost + turned) for other in obstacles.circles]
+        if obstacles.field is not None:
+            gaps.append(_gap_of_field(obstacles.field, centers, lost + turned))
+        nearest = min([nearest, *(gap - circle[2] for gap in gaps)])
+    return nearest
+
+
+def _turned(circle: Floats, poses: Floats, bend: Floats, error: float) -> tuple[Floats, Floats]:
+    """The centers (N + 1, 2) of a circle of the body, and how much farther than its origin they are from their chords.
+
+    What turns by an angle of at most a is within a^2 / 8 of its chord, a share of its distance from the origin.
+    """
+    ahead, left, _ = circle
+    arm = float(np.hypot(ahead, left))
+    if arm == 0.0:
+        return poses[:, :2], np.zeros(len(poses))
+    sine, cosine = np.sin(poses[:, 2]), np.cos(poses[:, 2])
+    centers = poses[:, :2] + np.column_stack([ahead * cosine - left * sine, ahead * sine + left * cosine])
+    turn = np.remainder(np.diff(poses[:, 2]) + np.pi, 2.0 * np.pi) - np.pi
+    bent = np.append(bend[:, 2] + 0.125 * turn**2, 0.0)
+    return centers, arm * (bent + error + ROUNDING * (1.0 + np.abs(poses[:, 2])))
+
+
+def _gap_of_field(field: DistanceField, centers: Floats, lost: Floats) -> float:
+    """The least distance of the chords from what a distance field is of, less what is lost."""
+    gaps = field.along(centers, np.vstack([centers[1:], centers[-1:]])) - lost
+    return float(np.min(gaps - ROUNDING * (np.abs(centers - field.corner).sum(axis=1) + 1.0)))
 
 
 def _gap(circle: Floats, times: Floats, places: Floats, lost: Floats) -> float:

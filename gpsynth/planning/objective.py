@@ -111,12 +111,13 @@ class Objective:
 
     def covered(self, points: Floats) -> Floats:
         """How many of the points (N, k, n) of each schedule lie in an obstacle, as it is at time 0."""
-        world = self.evaluator.world
-        if not len(world.position):
+        problem = self.evaluator.problem
+        if problem.obstacles is None:
             return np.zeros(len(points))
-        places = points[:, :, np.newaxis, world.position]  # (N, k, 1, 2)
-        gaps = np.hypot(*np.moveaxis(places - world.circles[:, :2], -1, 0)) - world.circles[:, 4]
-        inside: Floats = np.sum(np.any(gaps < 0.0, axis=2), axis=1, dtype=np.float64)
+        names = problem.plant.state_names
+        poses = points[..., [names.index(name) for name in problem.obstacles.position]]
+        gaps = problem.obstacles.gaps(poses.reshape(-1, poses.shape[-1])).reshape(points.shape[:2])
+        inside: Floats = np.sum(gaps < 0.0, axis=1, dtype=np.float64)
         return inside
 
     def arrivals(self, rollouts: Rollouts) -> Floats:
@@ -130,7 +131,7 @@ class Objective:
         settings, problem, world = self.settings, self.evaluator.problem, self.evaluator.world
         on_path = settings.obstacles == "path"
         gamma = settings.gamma if on_path else 0.0
-        slack = float(np.hypot(*problem.tolerance[world.position])) if len(world.position) else 0.0
+        slack = float(np.hypot(*problem.tolerance[world.position[:2]])) if len(world.position) else 0.0
         return Toll(
             limits=readonly(limits * (1.0 + ROUNDING)),
             due=self.budget,

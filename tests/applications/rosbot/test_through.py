@@ -71,6 +71,14 @@ def test_a_place_that_cannot_be_reached_is_named():
     assert report.reason.startswith("on the way to via-point 0: the goal is in collision")
 
 
+def test_a_car_passes_places_and_a_robot_with_lags_is_refused():
+    car = scene(model="car", turning_radius=0.5, circles=[])
+    report = plan_through(car, VIA[:1], law(), seed=1, effort=QUICK)
+    assert replay(car, report.controls, PERIOD, via=VIA[:1]).solves
+    with pytest.raises(ScenarioError, match="via-points are for robots without lags"):
+        plan_through(scene(model="dynamic_unicycle"), VIA, law(), effort=QUICK)
+
+
 @pytest.mark.parametrize(
     ("via", "sentence"),
     [
