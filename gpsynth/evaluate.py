@@ -205,13 +205,21 @@ class Evaluator:
         if obstacles is None:
             nowhere = np.empty(0, dtype=np.int32)
             everywhere = np.array([-np.inf, np.inf, -np.inf, np.inf])
-            return sealed(World(nowhere, np.empty((0, 5)), everywhere, float(self.margin)))
-        states = self.problem.plant.state_names
-        circles = np.array(obstacles.circles, dtype=np.float64).reshape(-1, 5)
-        circles[:, 4] += obstacles.radius
-        position = np.array([states.index(name) for name in obstacles.position], dtype=np.int32)
+            nothing, origin = np.empty((0, 0)), np.zeros(3)
+            return sealed(
+                World(
+                    *(nowhere, np.empty((0, 5)), everywhere, float(self.margin)),
+                    *(np.empty((0, 3)), nothing, origin),
+                )
+            )
+        states, body, field = self.problem.plant.state_names, obstacles.body, obstacles.field
+        names = obstacles.position if np.any(body[:, :2]) else obstacles.position[:2]
         return sealed(
-            World(position, circles, np.array(obstacles.bounds, dtype=np.float64), float(self.margin))
+            World(
+                np.array([states.index(name) for name in names], dtype=np.int32),
+                *(obstacles.circles, obstacles.bounds, float(self.margin), body),
+                *((np.empty((0, 0)), np.zeros(3)) if field is None else (field.squares, field.grid)),
+            )
         )
 
     @property
