@@ -20,6 +20,8 @@ from gpsynth.optimizers import (
     CMAES,
     PSO,
     CMAESState,
+    DifferentialEvolution,
+    DifferentialEvolutionState,
     Optimizer,
     Progress,
     PSOState,
@@ -138,6 +140,8 @@ def _optimizer(
     if settings.optimizer == "cmaes":
         first = None if x0 is None else x0[int(np.argmin(objective(x0)))]
         return CMAES(lower, upper, size=settings.particles, sigma=settings.spread, restarts=0, x0=first)
+    if settings.optimizer == "shade":
+        return DifferentialEvolution(lower, upper, size=settings.particles, x0=x0)
     swarm = PSO.clerc if settings.optimizer == "clerc" else PSO.seed
     return swarm(lower, upper, size=settings.particles, x0=x0)
 
@@ -163,7 +167,9 @@ def _plan(objective: Objective, found: Result[Any, Floats], history: History) ->
     )
 
 
-def _memory(state: PSOState | CMAESState) -> Floats:
+def _memory(state: PSOState | DifferentialEvolutionState | CMAESState) -> Floats:
+    if isinstance(state, DifferentialEvolutionState):
+        return state.x
     return state.best_x if isinstance(state, PSOState) else state.best_x[np.newaxis]
 
 
@@ -173,6 +179,8 @@ def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
     if isinstance(state, PSOState):
         costs = objective(state.best_x)
         state, spent = rescore(state, costs), len(costs)
+    elif isinstance(state, DifferentialEvolutionState):
+        state, spent = replace(state, costs=objective(state.x)), len(state.x)
     else:
         state, spent = replace(state, best_cost=float(objective(state.best_x[np.newaxis])[0])), 1
     return replace(found.progress, state=state, evaluations=found.evaluations + spent, history=())

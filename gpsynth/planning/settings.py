@@ -9,7 +9,7 @@ from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ProblemError
 
 Clear = Literal["path", "points"]
-Method = Literal["clerc", "seed", "cmaes"]
+Method = Literal["clerc", "seed", "shade", "cmaes"]
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class PlanSettings:
     beta: float = 0.25  # weight of the time
     gamma: float = 5.0  # weight of the obstacles
     margin: float = 0.004  # m, clearance that counts as none
-    optimizer: Method = "clerc"  # two swarms, "seed" being the paper's, or CMA-ES
+    optimizer: Method = "clerc"  # a swarm, "seed" being the paper's; differential evolution; CMA-ES
     particles: int = 64
     iterations: int = 15  # in a round
     rounds: int = 10  # T+ is tightened between them

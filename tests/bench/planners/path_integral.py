@@ -1,8 +1,9 @@
 """Model predictive path integral control (Williams et al. 2017): a sampling MPC that drives along a guide to the goal.
 
-Tuned by hand on p01, p06 and p10: samples and horizon are those of Nav2 (1000 of 56 steps of 0.05 s); noise held over
-four steps, as the fastest controls switch rarely; temperature, noise and weights from a grid. What a sample costs is its
-time: until it arrives, or the horizon and what is left of the guide from the nearest pose in reach.
+What a sample costs is its time: until it arrives, or the horizon and what is left of the guide from the nearest pose in
+reach. Samples and horizon are those of Nav2 (1000 of 56 steps of 0.05 s); noise is held over four steps, as the fastest
+controls switch rarely. Noise and temperature were tuned on p01, p03, p06, p08 and p10 over (0.4, 0.7) of the limits and
+(0.02, 0.05, 0.1) s.
 """
 
 import math
@@ -11,6 +12,7 @@ from collections.abc import Iterator
 import numba
 import numpy as np
 
+from applications.rosbot.discs import grown
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 from gpsynth.seeds import stream
@@ -30,7 +32,7 @@ def path_integral(scenario: Scenario, seed: int, watch: Watch) -> Iterator[Answe
     guide = guides_of(scenario, count=5)[0]
     line = np.column_stack([guide.poses, guide.times])
     limits = np.array([scenario.speed_limits, scenario.turn_limits])
-    discs, bounds = scenario.discs + [0.0, 0.0, MARGIN], np.array(scenario.bounds)
+    discs, bounds = grown(scenario.discs, MARGIN), np.array(scenario.bounds)
     aim = np.array([*scenario.goal, 0.98 * scenario.position_tolerance, 0.98 * scenario.heading_tolerance])
     sigma, rng = np.array(NOISE) * limits[:, 1], stream(seed, 1)
     pose, nominal, driven, near = np.array(scenario.start), np.zeros((STEPS, 2)), [], 0

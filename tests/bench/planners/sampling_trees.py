@@ -12,13 +12,14 @@ from typing import Any
 import numba
 import numpy as np
 
+from applications.rosbot.discs import grown
 from applications.rosbot.guides import top_speed
 from applications.rosbot.reeds_shepp import ReedsSheppPath, paths
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 from tests.bench.planners.attempt import MARGIN, Answer, Watch
 
-SLICE = 0.1  # s, after which the best path so far is looked at
+SLICE = 0.03  # s, after which the best path so far is looked at
 SPACING = 0.02  # m, between the states of a path that are checked
 TIE = 1e-6  # m; two words of this little difference are told apart by where they lead
 PERIOD = 0.05  # s, of which a control planner holds its controls 1 to 20
@@ -111,7 +112,7 @@ def _prepare(setup: Any, space: Any, scenario: Scenario) -> None:
         bounds.setLow(axis, float(scenario.bounds[2 * axis]))
         bounds.setHigh(axis, float(scenario.bounds[2 * axis + 1]))
     space.setBounds(bounds)
-    discs, limits = scenario.discs + [0.0, 0.0, MARGIN], np.array(scenario.bounds)
+    discs, limits = grown(scenario.discs, MARGIN), np.array(scenario.bounds)
     setup.setStateValidityChecker(lambda state: is_free(state.getX(), state.getY(), discs, limits))
     # The distance is that of the places and half of that of the headings, so that this is within both tolerances.
     tolerance = 0.98 * min(scenario.position_tolerance, 0.5 * scenario.heading_tolerance)
@@ -146,9 +147,7 @@ def _driven(space: Any, path: Any, radius: float, speed: float) -> tuple[Floats,
         space.interpolate(states[k], states[k + 1], 0.5, middle)
         curve = _through(poses[k], poses[k + 1], np.array([middle.getX(), middle.getY()]), radius)
         senses = np.sign(curve.lengths)
-        controls.append(
-            np.column_stack([speed * senses, speed / radius * senses * np.array(curve.turns)])
-        )
+        controls.append(np.column_stack([speed * senses, speed / radius * senses * np.array(curve.turns)]))
         durations.append(np.abs(curve.lengths) / speed)
     return np.concatenate(controls), np.concatenate(durations)
 

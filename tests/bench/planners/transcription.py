@@ -47,7 +47,11 @@ class _Problem:
     def of(cls, scenario: Scenario) -> "_Problem":
         import casadi
 
-        x, u, h = casadi.MX.sym("x", 3, INTERVALS + 1), casadi.MX.sym("u", 2, INTERVALS), casadi.MX.sym("h", 1, INTERVALS)
+        x, u, h = (
+            casadi.MX.sym("x", 3, INTERVALS + 1),
+            casadi.MX.sym("u", 2, INTERVALS),
+            casadi.MX.sym("h", 1, INTERVALS),
+        )
         goal = casadi.MX.sym("goal", 3)
         interval = _interval(scenario.discs)
         ends, gaps = interval.map(INTERVALS)(x[:, :-1], u, h)
@@ -76,13 +80,17 @@ class _Problem:
         solver = casadi.nlpsol("transcription", "ipopt", self.program, options)
         poses = resampled(guide, INTERVALS + 1)
         length = guide.duration / INTERVALS
-        first = np.concatenate([poses.ravel(), self._controls(poses, length).ravel(), np.full(INTERVALS, length)])
+        first = np.concatenate(
+            [poses.ravel(), self._controls(poses, length).ravel(), np.full(INTERVALS, length)]
+        )
         low, high = self._box(length)
         goal = self.scenario.goal.copy()
         goal[2] += 2.0 * np.pi * np.round((poses[-1, 2] - goal[2]) / (2.0 * np.pi))
         found = solver(x0=first, lbx=low, ubx=high, lbg=self.least, ubg=self.most, p=goal)
         vector = np.asarray(found["x"]).ravel()
-        states, controls, lengths = np.split(vector, [3 * (INTERVALS + 1), 3 * (INTERVALS + 1) + 2 * INTERVALS])
+        states, controls, lengths = np.split(
+            vector, [3 * (INTERVALS + 1), 3 * (INTERVALS + 1) + 2 * INTERVALS]
+        )
         converged = solver.stats()["success"]
         return states.reshape(-1, 3) if converged else None, controls.reshape(-1, 2), lengths
 
@@ -103,7 +111,9 @@ class _Problem:
             states[0] = start
             limits = [self.scenario.speed_limits[side], self.scenario.turn_limits[side]]
             sides.append(
-                np.concatenate([states.ravel(), np.tile(limits, INTERVALS), np.full(INTERVALS, share * length)])
+                np.concatenate(
+                    [states.ravel(), np.tile(limits, INTERVALS), np.full(INTERVALS, share * length)]
+                )
             )
         return sides[0], sides[1]
 
