@@ -23,6 +23,7 @@ class LiteralPlan:
     cost: float  # eq. 17 under the T+ of its time
     budget: float  # s, the last T+
     history: tuple[tuple[int, float], ...]  # (evaluations, T+ in s) at the beginning and whenever it fell
+    improvements: tuple[tuple[int, float], ...]  # (evaluations, cost), after a generation
 
 
 def plan_literally(
@@ -35,9 +36,11 @@ def plan_literally(
 ) -> LiteralPlan:
     """The search of so many evaluations; T+ is the objective's at first."""
     running = _Running(objective)
-    minimize(running, optimizer, seed=seed, path=path, budget=evaluations)
+    found = minimize(running, optimizer, seed=seed, path=path, budget=evaluations)
     assert running.best is not None
-    return LiteralPlan(running.best, running.cost, running.objective.budget, tuple(running.history))
+    return LiteralPlan(
+        running.best, running.cost, running.objective.budget, tuple(running.history), found.history
+    )
 
 
 class _Running:
