@@ -12,7 +12,7 @@ from gpsynth.arrays import Floats, Ints, frozen
 from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
-from gpsynth.kernels.layout import Clock, Conditions, Lanes, World, readonly, sealed
+from gpsynth.kernels.layout import Clock, Conditions, Lanes, Toll, World, readonly, sealed
 from gpsynth.kernels.pack import Extent, Frame, Instructions, Loop, frame, pack
 from gpsynth.kernels.tableaus import TABLEAUS
 from gpsynth.law import Law
@@ -23,6 +23,7 @@ from gpsynth.program import Program
 MOST_PERIODS = 10_000_000  # of one rollout
 ROUNDING = 1e-9  # of a sum of costs: what is above a bound by no more is not above it
 _NO_TRACE = np.empty((0, 0, 0))
+_NO_TOLL = Toll(frozen(np.empty(0)), *[0.0] * 8)
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,9 @@ class Rollouts:
     exposure: Floats  # (N, S) s with less clearance than the margin
     depth: Floats  # (N, S) m s, integral of what was missing of the margin
     diverged: Floats  # (N, S) 1.0 where the rollout diverged
+    share: (
+        Floats  # (N, S) of the period before `arrival` that lies behind it, were the measure linear in time
+    )
     terminal: Floats  # (N, S, q)
     final: Floats  # (N, S, n)
     paths: Paths | None = None  # where they were asked for
@@ -55,6 +59,7 @@ class _Plans(NamedTuple):
     points: Floats  # (K, k, n)
     ends: Floats  # (K, k) s
     reach: float = 0.0
+    toll: Toll = _NO_TOLL
 
 
 _NO_PLAN = _Plans(frozen(np.empty((1, 0, 1))), frozen(np.empty((1, 0))))
@@ -109,19 +114,33 @@ class Evaluator:
         return self._roll(program, vectors, _NO_PLAN, clock, len(vectors), paths=paths)
 
     def of_schedules(
-        self, law: Law, points: Floats, dwell: Floats, horizon: float | None = None, *, reach: float = 0.0
+        self,
+        law: Law,
+        points: Floats,
+        dwell: Floats,
+        horizon: float | None = None,
+        *,
+        reach: float = 0.0,
+        toll: Toll | None = None,
     ) -> Rollouts:
         """Rollouts (N, S) of one law under N schedules: points (N, k, n) and their dwell times (N, k) in s.
 
         With a positive `reach`, a state this near to its point (Euclidean, angles wrapped, in the units of the
-        states) goes on to the next point at once. Raises ProblemError as well if the law is not for the problem's
-        plant and features.
+        states) goes on to the next point at once. A rollout that cannot keep its limit of the `toll` ends early.
+        Raises ProblemError as well if the law is not for the problem's plant and features.
         """
         check_law(self.problem, law)
-        plans = self._plans(points, dwell, reach)
+        plans = self._plans(points, dwell, reach)._replace(toll=toll or _NO_TOLL)
         horizon = self.problem.horizon if horizon is None else horizon
         clock = self.until(horizon, reach=reach)
         return self._roll(law.program, law.parameters[np.newaxis], plans, clock, len(plans.points))
+
+    def stays(self, rollouts: Rollouts) -> npt.NDArray[np.bool_]:
+        """Which of these rollouts (N, S) arrive and end within the tolerance, whether they stop there or not."""
+        ends = np.concatenate([rollouts.final, np.broadcast_to(self.goals, rollouts.final.shape)], axis=-1)
+        measure = self.problem.arrival(ends.reshape(-1, ends.shape[-1]))[:, 0]
+        within: npt.NDArray[np.bool_] = measure.reshape(rollouts.arrival.shape) <= 0.0
+        return within & np.isfinite(rollouts.arrival)
 
     def _plans(self, points: Floats, dwell: Floats, reach: float) -> _Plans:
         places, times = numbers("points", points), numbers("dwell times", dwell)
@@ -160,7 +179,7 @@ class Evaluator:
             ends=plans.ends,
         )
         trace = self._trace(candidates * starts, clock.periods) if paths else _NO_TRACE
-        result = roll(self, program, lanes, clock, trace)
+        result = roll(self, program, lanes, clock, trace, plans.toll)
         rollouts = _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
         return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
 
@@ -186,13 +205,21 @@ class Evaluator:
         if obstacles is None:
             nowhere = np.empty(0, dtype=np.int32)
             everywhere = np.array([-np.inf, np.inf, -np.inf, np.inf])
-            return sealed(World(nowhere, np.empty((0, 5)), everywhere, float(self.margin)))
-        states = self.problem.plant.state_names
-        circles = np.array(obstacles.circles, dtype=np.float64).reshape(-1, 5)
-        circles[:, 4] += obstacles.radius
-        position = np.array([states.index(name) for name in obstacles.position], dtype=np.int32)
+            nothing, origin = np.empty((0, 0)), np.zeros(3)
+            return sealed(
+                World(
+                    *(nowhere, np.empty((0, 5)), everywhere, float(self.margin)),
+                    *(np.empty((0, 3)), nothing, origin),
+                )
+            )
+        states, body, field = self.problem.plant.state_names, obstacles.body, obstacles.field
+        names = obstacles.position if np.any(body[:, :2]) else obstacles.position[:2]
         return sealed(
-            World(position, circles, np.array(obstacles.bounds, dtype=np.float64), float(self.margin))
+            World(
+                np.array([states.index(name) for name in names], dtype=np.int32),
+                *(obstacles.circles, obstacles.bounds, float(self.margin), body),
+                *((np.empty((0, 0)), np.zeros(3)) if field is None else (field.squares, field.grid)),
+            )
         )
 
     @cached_property
@@ -249,7 +276,9 @@ class Evaluator:
         return frozen(np.broadcast_to(self.problem.goal, self.problem.starts.shape))
 
 
-def roll(evaluator: Evaluator, program: Program, lanes: Lanes, clock: Clock, trace: Floats) -> Floats:
+def roll(
+    evaluator: Evaluator, program: Program, lanes: Lanes, clock: Clock, trace: Floats, toll: Toll = _NO_TOLL
+) -> Floats:
     """The kernel's result (L, ...) for these lanes, computed in slices of whole blocks by the evaluator's threads."""
     rows, code = pack(evaluator.frame, instructions(program), len(program.parameters))
     total, block = len(lanes.picks), evaluator.block
@@ -258,7 +287,7 @@ def roll(evaluator: Evaluator, program: Program, lanes: Lanes, clock: Clock, tra
 
     def run(first: int, last: int) -> None:
         rollout.roll(
-            *(rows, code, lanes, evaluator.conditions, clock, evaluator.world),
+            *(rows, code, lanes, evaluator.conditions, clock, evaluator.world, toll),
             *(block, first, last, result, trace),
         )
 
@@ -353,6 +382,7 @@ def _rollouts(result: Floats, shape: tuple[int, int], terminals: int) -> Rollout
         exposure=table[..., rollout.EXPOSURE],
         depth=table[..., rollout.DEPTH],
         diverged=table[..., rollout.DIVERGED],
+        share=table[..., rollout.SHARE],
         terminal=table[..., first : first + terminals],
         final=table[..., first + terminals :],
     )

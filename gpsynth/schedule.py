@@ -1,5 +1,6 @@
 """Schedule: the equilibrium points a plant is led through, and how long each is the target."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +37,59 @@ class Schedule:
     def ends(self) -> Floats:
         """When each point stops being the target, (k,) s."""
         return np.cumsum(self.dwell)
+
+    def after(self, elapsed: float) -> "Schedule":
+        """What is left of it after so many seconds: points that are over drop out, the last one stays for no time."""
+        left = np.diff(np.maximum(self.ends - elapsed, 0.0), prepend=0.0)
+        kept = left > 0.0
+        kept[-1:] |= not np.any(kept)
+        return Schedule(self.points[kept], left[kept])
+
+    def split(self, count: int) -> "Schedule":
+        """The same motion with `count` points, more than it has: the longest dwell times are cut in two."""
+        points, dwell = self.points, self.dwell
+        while len(dwell) < count:
+            longest = int(np.argmax(dwell))
+            points = np.insert(points, longest, points[longest], axis=0)
+            dwell = np.insert(dwell, longest, 0.5 * dwell[longest])
+            dwell[longest + 1] -= dwell[longest]
+        return Schedule(points, dwell)
+
+
+@dataclass(frozen=True, eq=False)
+class Schedules:
+    """N schedules of as many points each, as arrays."""
+
+    points: Floats  # (N, k, n)
+    dwell: Floats  # (N, k) s
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", frozen(self.points))
+        object.__setattr__(self, "dwell", frozen(self.dwell))
+
+    @classmethod
+    def of(cls, schedules: Sequence[Schedule]) -> "Schedules":
+        """These schedules, at least one."""
+        return cls(
+            np.stack([each.points for each in schedules]), np.stack([each.dwell for each in schedules])
+        )
+
+    @classmethod
+    def joined(cls, parts: "Sequence[Schedules]") -> "Schedules":
+        """All schedules of some parts, at least one."""
+        return cls(
+            np.concatenate([each.points for each in parts]), np.concatenate([each.dwell for each in parts])
+        )
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __getitem__(self, number: int) -> Schedule:
+        return Schedule(self.points[number], self.dwell[number])
+
+    def take(self, numbers: npt.NDArray[np.intp]) -> "Schedules":
+        """Some of them, by their numbers."""
+        return Schedules(self.points[numbers], self.dwell[numbers])
 
 
 def _numbers(what: str, values: npt.ArrayLike) -> Floats:

@@ -70,7 +70,7 @@ def test_a_plan_holds_under_the_draw_it_was_made_for(setting):
     late = replace(problem, draws=Draws(delay=[0.1], noise=np.full((1, 1, 2), 0.01)))
     found = plan(late, law, SMALL, seed=1)
     assert found.is_free
-    assert found.arrival_time == found.trajectory.arrival  # in whole periods
+    assert found.trajectory.arrival - 0.05 < found.arrival_time <= found.trajectory.arrival
     again = simulate(late, law, schedule=found.schedule)
     assert np.array_equal(again.x, found.trajectory.x)
     assert not np.any(again.x[:3])  # nothing moves before the first command arrives
@@ -98,7 +98,7 @@ def test_a_plan_once_found_is_never_lost(setting, seed):
     # with equal dwell times a new T+ moves the switching times, so that old plans can fail
     equal = replace(SMALL, dwell=None, particles=12, iterations=4, rounds=8)
     plan(*setting, equal, seed=seed, callback=lambda each: seen.append(each.rank))
-    assert len(seen) == 8
+    assert len(seen) == 9  # once when the first particles have been tried, and after every round
     assert all(later <= earlier for earlier, later in pairwise(seen))
 
 
@@ -137,7 +137,7 @@ def test_differential_evolution_plans_as_well(setting):
     found = plan(*setting, replace(SMALL, optimizer="shade"), seed=1)
     assert found.is_free
     assert found.arrival_time < 4.3
-    assert len(found.swarm) == SMALL.particles
+    assert len(found.particles.costs) == SMALL.particles
 
 
 def test_a_population_is_scored_anew_under_a_tighter_budget(setting):
@@ -188,9 +188,7 @@ def test_the_paper_cost_is_equation_17(setting):
     points, dwell = cost.schedules(vectors)
     assert np.array_equal(dwell, np.full((2, 2), 2.0))  # T+ / 3, the goal being the third point
     rollouts = cost.rollouts(points, dwell)
-    used = np.where(
-        np.isinf(rollouts.arrival), rollouts.end, cost.arrivals(rollouts, points, dwell)[:, None]
-    )[:, 0]
+    used = np.where(np.isinf(rollouts.arrival), rollouts.end, cost.arrivals(rollouts)[:, None])[:, 0]
     error = np.linalg.norm(rollouts.final[:, 0] - [4.0, 0.0], axis=1)
     expected = 10.0 * error + 0.25 * (np.maximum(0.0, used - 6.0) + used / 6.0) + 5.0 * np.array([1.0, 0.0])
     assert np.allclose(cost(vectors), expected, rtol=1e-15, atol=0.0)
@@ -218,11 +216,12 @@ def test_equation_17_by_hand_when_late_and_with_the_heading_wrapped():
         exposure=0.5 * one,
         depth=0.02 * one,
         diverged=0.0 * one,
+        share=0.0 * one,
         terminal=np.zeros((1, 1, 0)),
         final=np.array([[[4.0, 5.0, -3.0]]]),  # 3 m and 4 m off, and -6 rad, which is 2 pi - 6
     )
     by_hand = 10.0 * np.sqrt(25.0 + (2.0 * np.pi - 6.0) ** 2) + 0.25 * (3.0 + 8.0 / 5.0) + 5.0 * 1.96
-    assert cost.costs(rollouts, np.zeros((1, 1, 3)), one)[0] == pytest.approx(by_hand, rel=1e-14)
+    assert cost.costs(rollouts, np.zeros((1, 1, 3)))[0] == pytest.approx(by_hand, rel=1e-14)
 
 
 def test_the_path_counts_where_points_are_clear(setting):
@@ -252,13 +251,13 @@ def test_arrival_is_found_between_the_control_periods(setting):
         step=0.05,
     )
     fine = simulate(fine_problem, law, schedule=Schedule(points[0], dwell[0]))
-    time = coarse.arrivals(coarse.rollouts(points, dwell), points, dwell)[0]
+    time = coarse.arrivals(coarse.rollouts(points, dwell))[0]
     # the last period is replayed by hand: the state is linear in time while the control is held
     share = np.linspace(0.0, 1.0, 100_001)[:, None]
     last = fine.x[-2] + share * (fine.x[-1] - fine.x[-2])
     inside = np.max(np.abs(last - problem.goal) / problem.tolerance, axis=1) <= 1.0
     exact = fine.t[-2] + 0.05 * share[np.argmax(inside), 0]
-    assert abs(time - exact) < 0.01  # the control at the end of the period stands for the one within
+    assert abs(time - exact) < 1e-4  # the largest error is linear in time once the point moves along one axis
 
 
 def test_cost_does_not_depend_on_what_else_is_evaluated(setting):
@@ -266,6 +265,30 @@ def test_cost_does_not_depend_on_what_else_is_evaluated(setting):
     vectors = np.random.default_rng(4).uniform(0.1, 3.0, (70, 6))
     together = cost(vectors)
     assert np.array_equal(together[17:18], cost(vectors[17:18]))
+
+
+@pytest.mark.parametrize("top_speed", [np.inf, np.sqrt(2.0)])
+def test_a_rollout_that_is_cut_short_costs_more_than_its_limit_and_others_the_same(setting, top_speed):
+    cost = objective(setting, replace(SMALL, top_speed=top_speed), budget=4.5)
+    vectors = np.random.default_rng(5).uniform(
+        [-1.0, -2.0] * 2 + [0.0] * 2, [5.0, 2.0] * 2 + [3.0] * 2, (400, 6)
+    )
+    full = cost(vectors)
+    limits = np.random.default_rng(6).permutation(full)
+    cut = cost(vectors, limits)
+    assert np.array_equal(cut[full <= limits], full[full <= limits])
+    assert np.all(cut[full > limits] > limits[full > limits])
+    points, dwell = cost.schedules(vectors)
+    ends = [cost.rollouts(points, dwell, given).end.sum() for given in (None, limits)]
+    assert ends[1] < 0.9 * ends[0]
+
+
+def test_swarms_side_by_side_find_what_one_finds(setting):
+    first = plan(*setting, replace(SMALL, swarms=3), seed=1)
+    assert first.is_free
+    assert len(first.particles.schedules) == len(first.particles.costs) == 3 * SMALL.particles
+    # the last T+ is the arrival time of the best, whose cost is beta under it
+    assert first.particles.costs.min() == pytest.approx(SMALL.beta, rel=1e-12)
 
 
 def test_what_does_not_fit_is_said(setting):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError, TracingError
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
@@ -128,6 +129,15 @@ def test_replace_keeps_what_is_not_replaced():
     assert changed.starts.shape == (1, 3)
 
 
+def test_a_problem_from_some_of_its_starts_has_their_draws():
+    draws = Draws(delay=[0.0, 0.1, 0.2])
+    whole = problem(starts=[*STARTS, [0.0, 0.0, 1.0]], draws=draws)
+    some = whole.of([2, 0])
+    assert np.array_equal(some.starts, whole.starts[[2, 0]])
+    assert some.draws.delay.tolist() == [0.2, 0.0]
+    assert problem().of([0]).draws is None
+
+
 def test_replacing_the_tolerance_moves_the_default_arrival():
     row = np.array([[0.1, 0.0, 0.0, 0.0, 0.0, 0.0]])
     assert problem().arrival(row).item() == 1.0
@@ -234,7 +244,7 @@ WRONG_OBSTACLES = {
     "bounds_nan": ({"bounds": [0.0, NAN, 0.0, 1.0]}, "bounds holds NaN"),
     "position_same": ({"position": ("x", "x")}, "position names two different states"),
     "position_one": ({"position": ["x"]}, "position names two different states"),
-    "position_three": ({"position": ("x", "y", "theta")}, "position names two different states"),
+    "position_four": ({"position": ("x", "y", "theta", "t")}, "position names two different states"),
     "position_text": ({"position": "xy"}, "position names two different states"),
 }
 

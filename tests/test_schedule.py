@@ -26,6 +26,24 @@ def test_arrays_are_read_only_copies():
         schedule.dwell[0] = 2.0
 
 
+def test_what_is_left_after_a_while():
+    schedule = Schedule([[0.0], [1.0], [2.0]], [0.5, 1.0, 2.0])
+    left = schedule.after(0.75)
+    assert left.points.tolist() == [[1.0], [2.0]]
+    assert left.dwell.tolist() == [0.75, 2.0]
+    over = schedule.after(4.0)
+    assert (over.points.tolist(), over.dwell.tolist()) == ([[2.0]], [0.0])
+
+
+def test_a_split_schedule_has_the_same_target_at_every_time():
+    schedule = Schedule([[0.0], [1.0]], [0.5, 3.0])
+    split = schedule.split(4)
+    assert len(split.dwell) == 4
+    for time in np.arange(0.01, 3.5, 0.02):
+        before, after = (each.points[np.searchsorted(each.ends, time)] for each in (schedule, split))
+        assert before == after
+
+
 @pytest.mark.parametrize(
     ("points", "dwell", "message"),
     [

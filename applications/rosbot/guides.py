@@ -4,17 +4,20 @@ A route is a taut string that knows nothing of headings. A guide leaves the star
 curves that join the route some way on, forwards or backwards, and so brings in the maneuvers that a string lacks.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from applications.rosbot.reeds_shepp import ReedsSheppPath, paths, shortest_path
+from applications.rosbot.curves import Curves, Samples
+from applications.rosbot.reeds_shepp import paths
 from applications.rosbot.routes import Route
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
 _Piece = tuple[Floats, Floats]  # poses (N, 3) and the sense of travel up to each, (N,)
 
+SENSES = (1.0, -1.0)  # forwards, backwards
 SPACING = 0.05  # m, between the poses of a guide
 JOINS = (0.3, 0.6, 1.0, 1.5)  # m along the route where the curves from the start and to the goal may join it
 BLOCKED = 40.0  # s of detour that a meter in collision counts for, times its depth and 0.1 m in m
@@ -47,26 +50,75 @@ def top_speed(scenario: Scenario) -> float:
     return max(map(abs, scenario.speed_limits))
 
 
-def direct_guides(scenario: Scenario) -> list[Guide]:
+def direct_guides(scenario: Scenario, count: int = 16) -> list[Guide]:
     """Reeds-Shepp curves from start to goal, the best first."""
-    curves = paths(scenario.start, scenario.goal, _radius(scenario))
-    return _ranked(scenario, [[_sampled(curve)] for curve in curves[:16]])
+    curves = Curves.of(paths(scenario.start, scenario.goal, _radius(scenario))[:16])
+    samples = curves.sampled(SPACING)
+    scores = _durations(scenario, curves) + BLOCKED * _blockages(scenario, samples)
+    best = [int(row) for row in np.argsort(scores, kind="stable") if np.isfinite(scores[row])]
+    return [_guide(scenario, [samples.piece(row)], float(scores[row])) for row in best[:count]]
 
 
-def guides_along(scenario: Scenario, route: Route) -> list[Guide]:
-    """Guides that follow a route forwards or backwards, the best first."""
-    radius = _radius(scenario)
-    ways = np.array([join for join in JOINS if join < 0.6 * route.length])
+def guides_along(scenario: Scenario, routes: Sequence[Route], count: int = 32) -> list[list[Guide]]:
+    """For each route guides that follow it forwards or backwards, the best first."""
+    joins = [np.array([join for join in JOINS if join < 0.6 * route.length]) for route in routes]
+    entries, exits = (
+        [],
+        [],
+    )  # poses (j, 3) of each route and sense: where the curves join it, and where they leave
+    for route, ways in zip(routes, joins, strict=True):
+        for sense in SENSES:
+            entries.append(_turned(route.poses(ways), sense))
+            exits.append(_turned(route.poses(route.length - ways), sense))
+    firsts, lasts = np.concatenate([np.empty((0, 3)), *entries]), np.concatenate([np.empty((0, 3)), *exits])
+    if not len(firsts):
+        return [[] for _ in routes]
+    begins, ends = (np.broadcast_to(pose, firsts.shape) for pose in (scenario.start, scenario.goal))
+    curves = Curves.shortest(
+        np.concatenate([begins, lasts]), np.concatenate([firsts, ends]), _radius(scenario)
+    )
+    samples = curves.sampled(SPACING)
+    scores = _durations(scenario, curves) + BLOCKED * _blockages(scenario, samples)
+    places = np.cumsum([0, *(len(each) for each in entries)])
     found = []
-    for sense in (1.0, -1.0):
-        first, last = _turned(route.poses(ways), sense), _turned(route.poses(route.length - ways), sense)
-        heads = [_sampled(shortest_path(scenario.start, pose, radius)) for pose in first]
-        tails = [_sampled(shortest_path(pose, scenario.goal, radius)) for pose in last]
-        for begin, head in zip(ways, heads, strict=True):
-            for end, tail in zip(route.length - ways, tails, strict=True):
-                if begin < end:
-                    found.append([head, _followed(route, begin, end, sense), tail])
-    return _ranked(scenario, found)
+    for number, (route, ways) in enumerate(zip(routes, joins, strict=True)):
+        combined = []
+        for index, sense in enumerate(SENSES):
+            first = int(places[2 * number + index])
+            combined += _combined(scenario, route, ways, sense, scores, (first, first + len(firsts)))
+        best = sorted(combined, key=lambda each: each[0])[:count]
+        found.append(
+            [
+                _guide(
+                    scenario,
+                    [samples.piece(head), _followed(route, begin, end, sense), samples.piece(tail)],
+                    score,
+                )
+                for score, head, tail, begin, end, sense in best
+            ]
+        )
+    return found
+
+
+def _combined(
+    scenario: Scenario,
+    route: Route,
+    ways: Floats,
+    sense: float,
+    scores: Floats,
+    places: tuple[int, int],
+) -> list[tuple[float, int, int, float, float, float]]:
+    """Score, curves and joints of every way along a route; the route itself is free, so only the curves are tested.
+
+    The curves to and from the route stand from the `places` on.
+    """
+    pace, (heads, tails), found = _pace(scenario, sense), places, []
+    for i, begin in enumerate(ways):
+        for j, end in enumerate(route.length - ways):
+            score = float(scores[heads + i] + scores[tails + j] + pace * (end - begin))
+            if begin < end and np.isfinite(score):
+                found.append((score, heads + i, tails + j, float(begin), float(end), sense))
+    return found
 
 
 def _radius(scenario: Scenario) -> float:
@@ -75,43 +127,47 @@ def _radius(scenario: Scenario) -> float:
     return top_speed(scenario) / (min(right, left) or max(right, left))
 
 
-def _ranked(scenario: Scenario, lines: list[list[_Piece]]) -> list[Guide]:
-    """Guides along the lines that the limits on speed allow, short and free ones first."""
-    speeds = {sense: sense * limit for sense, limit in zip((-1.0, 1.0), scenario.speed_limits, strict=True)}
-    guides = []
-    for line in lines:
-        poses, senses = (np.concatenate(parts) for parts in zip(*line, strict=True))
-        speed = np.where(senses > 0.0, speeds[1.0], speeds[-1.0])
-        if np.all(speed > 0.0):
-            steps = np.hypot(*np.diff(poses[:, :2], axis=0).T) / speed[1:]
-            times = np.concatenate([[0.0], np.cumsum(steps)])
-            score = float(times[-1]) + BLOCKED * _blockage(scenario, poses[:, :2])
-            guides.append(Guide(poses, times, senses, score))
-    return sorted(guides, key=lambda guide: guide.score)
+def _pace(scenario: Scenario, sense: float) -> float:
+    """Seconds a meter takes at top speed, forwards or backwards; infinity where the limits forbid it."""
+    limit = scenario.speed_limits[1] if sense > 0.0 else -scenario.speed_limits[0]
+    return 1.0 / limit if limit > 0.0 else np.inf
 
 
-def _blockage(scenario: Scenario, places: Floats) -> float:
-    """Integral along places (N, 2) of the depth in obstacles or out of bounds and 0.1 m, where there is any (m^2)."""
+def _durations(scenario: Scenario, curves: Curves) -> Floats:
+    """How long driving along takes at top speed (N,), in s."""
+    seconds = np.zeros(len(curves.lengths))
+    for sense in SENSES:
+        driven = np.sum(np.maximum(sense * curves.lengths, 0.0), axis=1)
+        seconds[driven > 0.0] += _pace(scenario, sense) * driven[driven > 0.0]
+    return seconds
+
+
+def _blockages(scenario: Scenario, samples: Samples) -> Floats:
+    """Integral (N,) along curves of the depth in obstacles or out of bounds and 0.1 m, where there is any (m^2)."""
+    places = samples.poses[:, :2]
     low, high = scenario.bounds.reshape(2, 2).T
     room = np.minimum(places - low, high - places).min(axis=1)
     discs = scenario.discs
     gaps = np.hypot(*(places[:, None] - discs[:, :2]).transpose(2, 0, 1)) - discs[:, 2]
     depth = -np.minimum(room, gaps.min(axis=1, initial=np.inf))
-    return float(SPACING * np.sum((0.1 + depth)[depth > 0.0]))
+    counted = np.concatenate([[0.0], np.cumsum(np.where(depth > 0.0, 0.1 + depth, 0.0))])
+    blocked: Floats = SPACING * np.diff(counted[samples.bounds])
+    return blocked
+
+
+def _guide(scenario: Scenario, line: Sequence[_Piece], score: float) -> Guide:
+    """The pieces of a line, one after the other."""
+    poses, senses = (np.concatenate(parts) for parts in zip(*line, strict=True))
+    pace = np.where(senses > 0.0, _pace(scenario, 1.0), _pace(scenario, -1.0))
+    steps = np.hypot(*np.diff(poses[:, :2], axis=0).T)
+    times = np.cumsum(steps * np.where(steps > 0.0, pace[1:], 0.0))
+    return Guide(poses, np.concatenate([[0.0], times]), senses, score)
 
 
 def _turned(poses: Floats, sense: float) -> Floats:
     turned = poses.copy()
     turned[:, 2] += 0.0 if sense > 0.0 else np.pi
     return turned
-
-
-def _sampled(curve: ReedsSheppPath) -> _Piece:
-    """Poses (N, 3) and senses (N,) along a curve, its corners among them."""
-    ends = np.concatenate([[0.0], np.cumsum(np.abs(curve.lengths))])
-    ways = np.union1d(np.arange(0.0, curve.length, SPACING), ends)
-    segment = np.clip(np.searchsorted(ends, ways, side="left") - 1, 0, len(curve.lengths) - 1)
-    return curve.poses(ways), np.sign(curve.lengths)[segment]
 
 
 def _followed(route: Route, begin: float, end: float, sense: float) -> _Piece:

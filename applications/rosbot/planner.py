@@ -1,47 +1,57 @@
 """Plans for scenarios: what can be reached is searched for, and what is found is replayed by another simulator."""
 
 import time
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
 from applications.rosbot.bounds import lower_bound
+from applications.rosbot.certificate import Certificate, certify
+from applications.rosbot.following import follow
 from applications.rosbot.model import reached
 from applications.rosbot.reachability import reachability
 from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.swarms import Callback, Effort, Search, Swarm, first_budget
+from applications.rosbot.swarms import Effort, Found, Search
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
-from gpsynth.planning import Plan
+from gpsynth.planning import Particles, Plan
 from gpsynth.problem import Obstacles, Problem
-from gpsynth.schedule import Schedule
+from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import Trajectory
 
-__all__ = ["PERIOD", "Effort", "PlanReport", "plan_scenario", "problem_of"]
+__all__ = ["PERIOD", "Callback", "Effort", "PlanReport", "plan_scenario", "problem_of"]
 
 PERIOD = 0.05  # s of the control: 2.5 cm at 0.5 m/s; twice as long costs time at every switch, half as long computing
+Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
 INSIDE = (0.001, 0.002)  # m, rad: how far within the tolerance a plan arrives, so that no rounding undoes it
 
 
 @dataclass(frozen=True, eq=False)
 class PlanReport:
-    """What planning came to."""
+    """What planning came to, or has come to so far."""
 
     status: Literal["planned", "unreachable", "not_found"]
     reason: str  # empty for a plan
     planning_time: float  # s
     evaluations: int
-    lower_bound: float  # s
+    scenario: Scenario
     seed: int
     plan: Plan | None = None
     law: Law | None = None
     replay: Replay | None = None  # by the simulator that shares nothing with the planner's
+    certificate: Certificate | None = None  # for the path between its samples
     history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
+    ended: Ended = "complete"
+
+    @cached_property
+    def lower_bound(self) -> float:
+        """A time (s) below which no plan can be; it takes longer to find than a first plan, so only when asked for."""
+        return lower_bound(self.scenario)
 
     @property
     def ratio(self) -> float:
@@ -49,6 +59,9 @@ class PlanReport:
         if self.replay is None:
             return np.inf
         return self.replay.arrival_time / self.lower_bound if self.lower_bound else 1.0
+
+
+Callback = Callable[[PlanReport], bool | None]
 
 
 def plan_scenario(
@@ -59,31 +72,74 @@ def plan_scenario(
     effort: Effort = Effort(),
     threads: int = 1,
     callback: Callback | None = None,
+    previous: PlanReport | None = None,
+    elapsed: float = 0.0,
 ) -> PlanReport:
     """The fastest collision-free plan found with any of the laws; the same seed gives the same plan.
 
-    `callback` gets every swarm's best plan after each of its rounds, not yet replayed; returning True ends that swarm.
-    Raises ScenarioError if there is no law, or one that does not steer v and omega.
+    `callback` gets the report as it stands after every round, its plan replayed; returning True ends the search, and so
+    does Ctrl-C once there is a plan. With a `previous` report, whose plan has been driven for `elapsed` seconds, what
+    is left of that plan is improved under the scenario as it is now: its start is where the robot is, its circles where
+    they are. Only if no collision-free plan lies near, everything is searched. Raises ScenarioError if there is no law,
+    or one that does not steer v and omega.
     """
-    began = time.perf_counter()
+    watch = _Watch(time.perf_counter(), effort, callback)
     problems = _problems(scenario, laws)
     at_rest = replay(scenario, np.empty((0, 2)), PERIOD)
-    if at_rest.solves:
-        report = _arrived(scenario, problems[0][1], at_rest, seed)
-        return replace(report, planning_time=time.perf_counter() - began)
+    stay = certify(scenario, np.empty((0, 2)), PERIOD)
+    if at_rest.solves and stay.is_clear:
+        arrived = _arrived(scenario, problems[0][1], at_rest, seed)
+        return watch.stamped(replace(arrived, certificate=stay))
+    report = PlanReport("not_found", "", 0.0, 0, scenario, seed)
+    if previous is not None and previous.plan is not None and previous.law is not None:
+        report = watch.improved(report, _followed(report, previous.plan, previous.law, elapsed, effort))
+        if report.status == "planned" or report.ended != "complete":
+            return report
     verdict = reachability(scenario)
-    report = PlanReport("unreachable", verdict.reason, 0.0, 0, lower_bound(scenario), seed)
-    if verdict.status != "unreachable":
-        ways = routes(scenario, margin=effort.scouts.margin)
-        budget, found = first_budget(scenario, ways), list[Swarm]()
-        for attempt in range(effort.attempts):
-            with ThreadPoolExecutor(threads) as pool:
-                search = Search(scenario, problems, effort, seed, attempt, pool, callback)
-                found += search.run(ways, min(budget * 2.0**attempt, scenario.time_limit))
-            report = _verified(scenario, found, report)
-            if report.status == "planned":
-                break
-    return replace(report, planning_time=time.perf_counter() - began)
+    if verdict.status == "unreachable":
+        return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
+    ways = routes(scenario, margin=effort.scouts.margin)
+    for attempt in range(effort.attempts):
+        search = Search(scenario, ways, problems, effort, seed, attempt, threads)
+        report = watch.improved(report, search.run())
+        if report.status == "planned" or report.ended != "complete":
+            break
+    return report
+
+
+@dataclass(frozen=True, eq=False)
+class _Watch:
+    """Keeps the fastest plan of a search that the other simulator confirms, and says when to end."""
+
+    began: float
+    effort: Effort
+    callback: "Callback | None"
+
+    def improved(self, report: PlanReport, search: Iterator[Found]) -> PlanReport:
+        """The report with the fastest plan of a search, or with the reason why there is none."""
+        spent = report.evaluations
+        try:
+            for found in search:
+                report = _confirmed(replace(report, evaluations=spent + found.evaluations), found)
+                ended = self._ended(report)
+                if ended != "complete":
+                    return self.stamped(replace(report, ended=ended))
+        except KeyboardInterrupt:
+            if report.status != "planned":
+                raise
+            report = replace(report, ended="interrupted")
+        return self.stamped(report)
+
+    def stamped(self, report: PlanReport) -> PlanReport:
+        """The report with the time that it took."""
+        return replace(report, planning_time=time.perf_counter() - self.began)
+
+    def _ended(self, report: PlanReport) -> Ended:
+        if self.callback is not None and self.callback(self.stamped(report)):
+            return "callback"
+        if report.evaluations >= self.effort.rollouts:
+            return "rollouts"
+        return "deadline" if time.perf_counter() - self.began >= self.effort.deadline else "complete"
 
 
 def problem_of(scenario: Scenario, law: Law) -> Problem:
@@ -99,8 +155,15 @@ def problem_of(scenario: Scenario, law: Law) -> Problem:
         period=PERIOD,
         features=law.features,
         reached=reached(*shrunk),
-        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
+        obstacles=_obstacles(scenario),
     )
+
+
+def _obstacles(scenario: Scenario) -> Obstacles:
+    if scenario.is_round:
+        return Obstacles(scenario.circles, scenario.bounds, scenario.radius, field=scenario.field)
+    position = ("x", "y", "theta")
+    return Obstacles(scenario.circles, scenario.bounds, 0.0, position, scenario.body, scenario.field)
 
 
 def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, Law]]:
@@ -138,40 +201,41 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
         cost=0.0,
         evaluations=0,
         history=(),
-        swarm=(),
+        particles=Particles(Schedules(np.empty((0, 0, 3)), np.empty((0, 0))), np.empty(0)),
     )
-    return PlanReport("planned", "", 0.0, 0, lower_bound(scenario), seed, plan=plan, law=law, replay=at_rest)
+    return PlanReport("planned", "", 0.0, 0, scenario, seed, plan=plan, law=law, replay=at_rest)
 
 
-def _verified(scenario: Scenario, swarms: Sequence[Swarm], report: PlanReport) -> PlanReport:
-    """The fastest plan that the other simulator confirms, or that there is none."""
-    plans = [swarm.plan for swarm in swarms]
-    evaluations = sum(plan.evaluations for plan in plans)
-    for swarm in sorted(swarms, key=lambda swarm: swarm.plan.rank):
-        check = replay(scenario, swarm.plan.trajectory.u, PERIOD) if swarm.plan.is_free else None
-        if check is not None and check.solves:
+def _followed(
+    report: PlanReport, previous: Plan, law: Law, elapsed: float, effort: Effort
+) -> Iterator[Found]:
+    """Plans near what is left of the previous one."""
+    if not len(previous.schedule.dwell):
+        return iter(())
+    [(problem, law)] = _problems(report.scenario, [law])
+    return follow(problem, law, previous, elapsed, effort.followers, report.seed)
+
+
+def _confirmed(report: PlanReport, found: Found) -> PlanReport:
+    """The report with what was found, if it is faster, replayed as well, and its certificate is clear."""
+    scenario, plan = report.scenario, found.plan
+    if plan.is_free and (report.plan is None or plan.arrival_time < report.plan.arrival_time):
+        check = replay(scenario, plan.trajectory.u, PERIOD)
+        proof = certify(scenario, plan.trajectory.u, PERIOD, until=check.arrival_time)
+        if check.solves and proof.is_clear:
             return replace(
                 report,
                 status="planned",
                 reason="",
-                evaluations=evaluations,
-                plan=swarm.plan,
-                law=swarm.law,
+                plan=plan,
+                law=found.law,
                 replay=check,
-                history=_improvements(plans),
+                certificate=proof,
+                history=(*report.history, (report.evaluations, plan.arrival_time)),
             )
+    if report.status == "planned":
+        return report
     reason = (
         f"no collision-free plan within {scenario.time_limit:g} s was found; the goal may still be reachable"
     )
-    return replace(report, status="not_found", reason=reason, evaluations=evaluations)
-
-
-def _improvements(plans: Sequence[Plan]) -> tuple[tuple[int, float], ...]:
-    """(evaluations, arrival time) at every improvement, as if the searches had run one after the other."""
-    spent, best, history = 0, np.inf, []
-    for each in plans:
-        spent += each.evaluations
-        if each.is_free and each.arrival_time < best:
-            best = each.arrival_time
-            history.append((spent, best))
-    return tuple(history)
+    return replace(report, reason=reason)

@@ -8,6 +8,7 @@ forwards, backwards in time, mirrored and both, three of them also from goal to 
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -43,11 +44,11 @@ class ReedsSheppPath:
         """The poses (N, 3) after so many meters driven, (N,)."""
         corners = [self.start]
         for turn, length in zip(self.turns, self.lengths, strict=True):
-            corners.append(_advance(corners[-1], np.array(turn), length, self.radius))
+            corners.append(advance(corners[-1], np.array(turn), length, self.radius))
         ends = np.cumsum(np.abs(self.lengths))
         segment = np.minimum(np.searchsorted(ends, ways, side="right"), len(ends) - 1)
         into = (np.asarray(ways) - (ends - np.abs(self.lengths))[segment]) * np.sign(self.lengths)[segment]
-        return _advance(np.array(corners)[segment], np.array(self.turns)[segment], into, self.radius)
+        return advance(np.array(corners)[segment], np.array(self.turns)[segment], into, self.radius)
 
 
 def shortest_path(start: Floats, goal: Floats, radius: float) -> ReedsSheppPath:
@@ -71,6 +72,22 @@ def paths(start: Floats, goal: Floats, radius: float) -> list[ReedsSheppPath]:
     return sorted(found.values(), key=lambda path: path.length)
 
 
+def shortest_words(starts: Floats, goals: Floats, radius: float) -> tuple[npt.NDArray[np.int64], Floats]:
+    """Turns and signed lengths (m), (N, 5) both, of the shortest paths between poses (N, 3); 0 after the last segment.
+
+    A path of length zero keeps segments of length zero alone.
+    """
+    words = _words(*_relative(starts, goals, radius))
+    turns, lengths = np.zeros((len(words), 5), dtype=np.int64), np.zeros((len(words), 5, len(goals)))
+    for number, (word, segments) in enumerate(words):
+        turns[number, : len(word)], lengths[number, : len(word)] = word, segments
+    best = np.nanargmin(np.sum(np.abs(lengths), axis=1), axis=0)
+    chosen = lengths[best, :, np.arange(len(goals))]
+    order = np.argsort(np.abs(chosen) <= ZERO, axis=1, kind="stable")
+    chosen = np.take_along_axis(np.where(np.abs(chosen) > ZERO, chosen, 0.0), order, axis=1)
+    return np.take_along_axis(turns[best], order, axis=1), radius * chosen
+
+
 def distance(start: Floats, goals: Floats, radius: float) -> Floats:
     """Lengths (N,) of the shortest paths from one pose (3,) to many (N, 3)."""
     x, y, turn = _relative(np.asarray(start, dtype=float), np.asarray(goals, dtype=float), radius)
@@ -81,11 +98,12 @@ def distance(start: Floats, goals: Floats, radius: float) -> Floats:
 
 def _relative(start: Floats, goal: Floats, radius: float) -> tuple[Floats, Floats, Floats]:
     dx, dy, turn = np.moveaxis(goal - start, -1, 0)
-    cos, sin = np.cos(start[2]), np.sin(start[2])
+    cos, sin = np.cos(start[..., 2]), np.sin(start[..., 2])
     return (cos * dx + sin * dy) / radius, (cos * dy - sin * dx) / radius, turn
 
 
-def _advance(pose: Floats, turn: Floats, length: Floats, radius: float) -> Floats:
+def advance(pose: Floats, turn: npt.NDArray[Any], length: Floats, radius: float) -> Floats:
+    """Poses (N, 3) moved by lengths (N,), in m, along arcs of a radius; turns (N,) are +1 left, 0, -1 right."""
     x, y, heading = np.moveaxis(np.asarray(pose), -1, 0)
     half = 0.5 * turn * length / radius
     chord = length * np.sinc(half / np.pi)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from applications.rosbot.gaps import gaps_to_circles, gaps_to_room
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ScenarioError
@@ -81,12 +82,11 @@ def drive(start: Floats, controls: Floats, durations: Floats) -> Floats:
 
 def clearance(scenario: Scenario, trajectory: Floats) -> float:
     """The smallest gap (m) between the robot and the obstacles, moving ones where they then are; inf without any."""
-    t, x, y, _ = trajectory.T
-    gaps = (
-        np.sqrt(np.min((x - cx - vx * t) ** 2 + (y - cy - vy * t) ** 2)) - radius - scenario.radius
-        for cx, cy, vx, vy, radius in scenario.circles
-    )
-    return float(min(gaps, default=np.inf))
+    t, poses = trajectory[:, 0], trajectory[:, 1:]
+    gap = float(gaps_to_circles(scenario.body, scenario.circles, poses, t).min(initial=np.inf))
+    if scenario.room is not None:
+        gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
+    return gap
 
 
 def _in_limits(scenario: Scenario, controls: Floats) -> bool:

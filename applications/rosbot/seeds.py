@@ -6,21 +6,18 @@ import numpy as np
 
 from applications.rosbot.guides import Guide
 from gpsynth.arrays import Floats
-from gpsynth.schedule import Schedule
+from gpsynth.schedule import Schedule, Schedules
 
 POSITION_NOISE, HEADING_NOISE, DWELL_NOISE = 0.1, 0.3, 0.15  # m, rad, share
+DWELL = (0.0, 4.0)  # s
 BEYOND = 0.3  # m: a point ahead of where the next takes over keeps the controls saturated
 
 
-def schedules_along(
-    guides: Sequence[Guide], points: int, count: int, rng: np.random.Generator
-) -> list[Schedule]:
-    """`count` schedules, the guides in turn: once as they are, then with noise; none without guides."""
-    found = []
-    for number in range(count if guides else 0):
-        exact = along(guides[number % len(guides)], points)
-        found.append(exact if number < len(guides) else _disturbed(exact, rng))
-    return found
+def schedules_along(guides: Sequence[Guide], points: int, count: int, rng: np.random.Generator) -> Schedules:
+    """`count` schedules, the guides (at least one) in turn: once as they are, then with noise."""
+    exact = Schedules.of([along(guide, points) for guide in guides[:count]])
+    number = np.arange(count)
+    return _disturbed(exact.take(number % len(exact)), np.where(number < len(exact), 0.0, 1.0), rng)
 
 
 def along(guide: Guide, points: int) -> Schedule:
@@ -40,12 +37,21 @@ def _switches(guide: Guide, points: int) -> Floats:
     return np.sort(times)
 
 
-def nearby(schedule: Schedule, count: int, scale: float, rng: np.random.Generator) -> list[Schedule]:
+def nearby(schedule: Schedule, count: int, scale: float, rng: np.random.Generator) -> Schedules:
     """A schedule and `count` - 1 others around it; `scale` is the noise as a share of that along guides."""
-    return [schedule, *(_disturbed(schedule, rng, scale) for _ in range(count - 1))]
+    number = np.arange(count)
+    return _disturbed(Schedules.of([schedule]).take(0 * number), np.where(number == 0, 0.0, scale), rng)
 
 
-def _disturbed(schedule: Schedule, rng: np.random.Generator, scale: float = 1.0) -> Schedule:
-    noise = scale * rng.normal(size=schedule.points.shape) * [POSITION_NOISE, POSITION_NOISE, HEADING_NOISE]
-    share = 1.0 + scale * DWELL_NOISE * rng.uniform(-1.0, 1.0, len(schedule.dwell))
-    return Schedule(schedule.points + noise, schedule.dwell * share)
+def anywhere(region: tuple[Floats, Floats], points: int, count: int, rng: np.random.Generator) -> Schedules:
+    """`count` schedules with points anywhere in a region, bounds (3,), and any dwell times."""
+    return Schedules(rng.uniform(*region, (count, points, 3)), rng.uniform(*DWELL, (count, points)))
+
+
+def _disturbed(schedules: Schedules, scales: Floats, rng: np.random.Generator) -> Schedules:
+    """The schedules with noise, each at a scale (N,) of its own."""
+    noise = rng.normal(size=schedules.points.shape) * [POSITION_NOISE, POSITION_NOISE, HEADING_NOISE]
+    shares = DWELL_NOISE * rng.uniform(-1.0, 1.0, schedules.dwell.shape)
+    return Schedules(
+        schedules.points + scales[:, None, None] * noise, schedules.dwell * (1.0 + scales[:, None] * shares)
+    )

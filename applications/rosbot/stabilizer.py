@@ -30,6 +30,7 @@ OPERATIONS = ("add", "sub", "mul", "min", "max", "abs", "square", "tanh", "sin",
 POSITION, HEADING = 0.05, 0.1  # m, rad: tolerance of arrival
 SEARCH_BUDGET = 80_000  # parameter vectors
 ISLANDS, ENOUGH = Islands(8), 40_000  # islands, and the budget from which each has enough
+TRAINING, SAMPLE = 1_024, 64  # starts of the search and of the tuning, and how many they see at a time
 # The first sign: left and right change places. The second: the robot turns round, so that forward is backward. A law
 # without these symmetries can be good on its training; it reaches the goal by turning the same way all the time.
 SYMMETRIES = MappingProxyType(
@@ -119,9 +120,9 @@ def synthesize_stabilizer(
 ) -> SynthesisResult:
     """Find the stabilizer from scratch: a law that reaches every target and holds it.
 
-    Searched on the kinematics from 64 starts at 0.1 s; tuned on the dynamics from 64 others, each under a draw of its
-    own, at 0.05 s; scored on 2048 more on the dynamics, and on the kinematics at 0.05 s and 0.005 s. Checkpoints in
-    `folder` and `resume` are those of `synthesize`.
+    Searched on the kinematics at 0.1 s, then tuned on the dynamics at 0.05 s, each start under a draw of its own; both
+    see 64 of 1024 starts at a time, in the end those that laws missed. Scored on 2048 more on the dynamics, and on the
+    kinematics at 0.05 s and 0.005 s. Checkpoints in `folder` and `resume` are those of `synthesize`.
     """
     unseen = training_poses(stream(seed, _UNSEEN), 2_048)
     problem = stabilization(unseen, stop=False)
@@ -135,11 +136,16 @@ def synthesize_stabilizer(
         budget=budget,
         tuning=300,
         rough=stabilization(
-            training_poses(stream(seed, _ROUGH), 64), period=0.1, horizon=20.0, method="heun", stop=False
+            training_poses(stream(seed, _ROUGH), TRAINING),
+            period=0.1,
+            horizon=20.0,
+            method="heun",
+            stop=False,
         ),
         tuned=_tuning(seed),
         trials=trials,
         islands=ISLANDS if budget >= ENOUGH else None,
+        sample=SAMPLE,
         folder=folder,
         resume=resume,
         threads=threads,
@@ -150,7 +156,7 @@ def synthesize_stabilizer(
 
 def _tuning(seed: int) -> Problem:
     """Dynamics in long steps: lags below LAG would need shorter ones, and to a law they are all the same."""
-    plant, starts = dynamic_unicycle(), training_poses(stream(seed, _TUNING), 64)
+    plant, starts = dynamic_unicycle(), training_poses(stream(seed, _TUNING), TRAINING)
     draws = random_draws(plant, stream(seed, _TUNING, _DRAWS), len(starts), delay=DELAY)
     lags = [name.startswith("tau") for name in plant.parameter_names]
     slower = Draws(np.where(lags, np.maximum(draws.parameters, LAG), draws.parameters), delay=draws.delay)

@@ -1,27 +1,27 @@
-"""The search behind a plan: a swarm for each way around the obstacles and each law, the best of them followed up."""
+"""The search behind a plan: swarms side by side for each way around the obstacles, the best of them followed up."""
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf
 
 import numpy as np
 
 from applications.rosbot.guides import Guide, direct_guides, guides_along, top_speed
 from applications.rosbot.routes import Route
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.seeds import nearby, schedules_along
+from applications.rosbot.seeds import anywhere, nearby, schedules_along
 from gpsynth.arrays import Floats
 from gpsynth.law import Law
-from gpsynth.planning import Plan, PlanSettings, plan
+from gpsynth.planning import Particles, Plan, PlanSettings, plans
 from gpsynth.problem import Problem
-from gpsynth.schedule import Schedule
+from gpsynth.schedule import Schedules
 from gpsynth.seeds import stream
 
 SCOUT, CHASE, REFINE = range(1, 4)  # stages of the random streams
 GUIDES = 8  # along which a swarm's first schedules lie
+SPARE = 1.5  # of the time along a guide, for a first plan
 BEYOND = 1.0  # m, how far from the guides equilibrium points may lie
-
-Callback = Callable[[Plan], bool | None]
 
 
 @dataclass(frozen=True)
@@ -33,39 +33,62 @@ class Effort:
     scouts: PlanSettings = PlanSettings(particles=32, iterations=12, rounds=3)
     chasers: PlanSettings = PlanSettings(particles=48, iterations=15, rounds=6, patience=1.1)
     refiners: PlanSettings = PlanSettings(particles=32, iterations=30, rounds=5, patience=1.02)
+    followers: PlanSettings = PlanSettings(particles=32, iterations=4, rounds=2)  # of a previous plan
     chased: int = 4  # scouts that are followed up
     refined: int = 2
     added: int = 2  # points that refinement adds
     nearness: float = 0.3  # noise of refinement's first schedules, as a share of the scouts'
     attempts: int = 3  # with other random numbers and twice the time budget, while nothing is found
+    rollouts: float = inf  # after which the best plan so far is given
+    deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
-    """Where a swarm starts: along a route, straight to the goal, or anywhere."""
+class Found:
+    """The best plan of a stage so far."""
 
-    number: int
-    kind: Route | None
-    is_anywhere: bool = False
-
-    def guides(self, scenario: Scenario) -> tuple[Guide, ...]:
-        """The guides of this way, the best first; none for anywhere."""
-        if self.is_anywhere:
-            return ()
-        found = direct_guides(scenario) if self.kind is None else guides_along(scenario, self.kind)
-        return tuple(found[:GUIDES])
+    plan: Plan
+    law: Law
+    evaluations: int  # of the whole search
 
 
 @dataclass(frozen=True, eq=False)
 class Swarm:
-    """One law on one way, and the best plan it has found."""
+    """One law on one way: the best schedule of every particle."""
 
-    number: int
-    problem: Problem
-    law: Law
-    guides: tuple[Guide, ...]
-    region: tuple[Floats, Floats]
-    plan: Plan
+    number: int  # within its law
+    team: int  # the number of its law
+    promise: float  # s, the score of its best guide
+    schedules: Schedules  # the best first
+    cost: float  # of the best one
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Swarms of one law that are evaluated together; `promises` has one number for each of them."""
+
+    team: int
+    settings: PlanSettings
+    initial: Schedules
+    promises: Sequence[float]
+    path: tuple[int, ...]  # of the random streams
+
+    def swarms(self, particles: Particles) -> list[Swarm]:
+        """The swarms that have come of it."""
+        costs = particles.costs.reshape(len(self.promises), -1)
+        order = np.argsort(costs, axis=1, kind="stable")
+        first = costs.shape[1] * np.arange(len(costs))
+        return [
+            Swarm(number, self.team, promise, particles.schedules.take(ranked), float(costs[number].min()))
+            for number, (promise, ranked) in enumerate(
+                zip(self.promises, order + first[:, None], strict=True)
+            )
+        ]
+
+
+Stage = Generator[
+    Found, None, tuple[list[Swarm], float, int]
+]  # the swarms, T+ (s) and the evaluations so far
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,119 +96,119 @@ class Search:
     """One attempt at a scenario, given as a problem for each law. Swarms share nothing but the time budget T+."""
 
     scenario: Scenario
+    routes: Sequence[Route]
     problems: Sequence[tuple[Problem, Law]]
     effort: Effort
     seed: int
-    attempt: int
-    pool: ThreadPoolExecutor
-    callback: Callback | None = None
+    attempt: int = 0
+    threads: int = 1
 
-    def run(self, routes: Sequence[Route], budget: float) -> list[Swarm]:
-        """The swarms after every stage; T+ (s) is `budget` at first."""
-        ways = [Way(number, route) for number, route in enumerate(routes)]
-        ways += [Way(len(ways), None), Way(len(ways) + 1, None, is_anywhere=True)]
-        area = np.vstack(
-            [self.scenario.start[:2], self.scenario.goal[:2], *(route.points for route in routes)]
-        )
-        groups = list(self.pool.map(lambda way: self.scouts(way, area, budget), ways))
-        scouts = [swarm for group in groups for swarm in group]
-        budget = _tightened(scouts, budget)
+    def run(self) -> Iterator[Found]:
+        """The best plan after every round of every stage."""
+        scouts, budget, spent = yield from self._stage(self._scouts(), self.first_budget, 0)
         leaders = _leaders(scouts, self.effort.chased)
-        chasers = list(self.pool.map(lambda swarm: self.chaser(swarm, budget), leaders))
-        budget = _tightened(chasers, budget)
-        leaders = sorted(chasers, key=_rank)[: self.effort.refined]
-        return [*scouts, *chasers, *self.pool.map(lambda swarm: self.refiner(swarm, budget), leaders)]
+        chasers, budget, spent = yield from self._stage(self._chasers(leaders), budget, spent)
+        leaders = sorted(chasers, key=_cost)[: self.effort.refined]
+        yield from self._stage(map(self._refiner, leaders), budget, spent)
 
-    def scouts(self, way: Way, area: Floats, budget: float) -> list[Swarm]:
-        """For each law a swarm or more along the guides of a way, every fourth particle anywhere."""
-        guides, settings = way.guides(self.scenario), replace(self.effort.scouts, points=self.effort.points)
-        region = _region(area, guides)
-        team = list(self.problems) * -(-self.effort.swarms // len(self.problems))
-        swarms = []
-        for index, (problem, law) in enumerate(team):
-            number = way.number * len(team) + index
-            rng = stream(self.seed, SCOUT, self.attempt, number, 0)
-            initial = schedules_along(guides, settings.points, settings.particles * 3 // 4, rng)
-            found = plan(
+    @cached_property
+    def ways(self) -> list[list[Guide]]:
+        """The guides of every route, of the straight way to the goal, and none for anywhere."""
+        return [
+            *guides_along(self.scenario, self.routes, GUIDES),
+            direct_guides(self.scenario, GUIDES),
+            [],
+        ]
+
+    @property
+    def first_budget(self) -> float:
+        """The first T+ (s): half as long again as the best guide, and twice as long at every further attempt."""
+        scores = [way[0].score for way in self.ways if way]
+        return min(self.scenario.time_limit, SPARE * 2.0**self.attempt * min(scores, default=np.inf))
+
+    @cached_property
+    def region(self) -> tuple[Floats, Floats]:
+        """Bounds (3,) of the equilibrium points: the guides and some more, and two turns."""
+        guides = [guide.poses[:, :2] for way in self.ways for guide in way]
+        ends = np.array([self.scenario.start[:2], self.scenario.goal[:2]])
+        places, turns = np.vstack([ends, *(route.points for route in self.routes), *guides]), 2.0 * np.pi
+        return np.append(places.min(axis=0) - BEYOND, -turns), np.append(places.max(axis=0) + BEYOND, turns)
+
+    def _stage(self, tasks: Iterable[Task], budget: float, spent: int) -> Stage:
+        """The tasks one after the other."""
+        swarms: list[Swarm] = []
+        for task in tasks:
+            problem, law = self.problems[task.team]
+            settings = replace(task.settings, top_speed=top_speed(self.scenario))
+            for plan in plans(
                 problem,
                 law,
                 settings,
                 seed=self.seed,
-                initial=initial,
-                region=region,
+                initial=task.initial,
+                region=self.region,
                 budget=budget,
-                path=(SCOUT, self.attempt, number, 1),
-                callback=self.callback,
-            )
-            swarms.append(Swarm(number, problem, law, guides, region, found))
-        return swarms
+                path=task.path,
+                threads=self.threads,
+            ):
+                yield Found(plan, law, spent + plan.evaluations)
+            swarms += task.swarms(plan.particles)
+            spent += plan.evaluations
+            budget = min(budget, plan.arrival_time) if plan.is_free else budget
+        return swarms, budget, spent
 
-    def chaser(self, swarm: Swarm, budget: float) -> Swarm:
-        """The swarm goes on from where its particles were best, with new ones besides."""
+    def _scouts(self) -> Iterator[Task]:
+        """For each law swarms along the guides of every way, every fourth particle anywhere."""
+        effort, teams = self.effort, len(self.problems)
+        ways = [way for way in self.ways for _ in range(-(-effort.swarms // teams))]
+        settings = replace(effort.scouts, points=effort.points, swarms=len(ways))
+        for team in range(teams):
+            rng = stream(self.seed, SCOUT, self.attempt, team, 0)
+            initial = []
+            for way in ways:
+                guided = settings.particles * 3 // 4 if way else 0
+                if way:
+                    initial.append(schedules_along(way, settings.points, guided, rng))
+                initial.append(self._anywhere(settings.particles - guided, rng))
+            promises = [way[0].score if way else np.inf for way in ways]
+            path = (SCOUT, self.attempt, team, 1)
+            yield Task(team, settings, Schedules.joined(initial), promises, path)
+
+    def _chasers(self, leaders: Sequence[Swarm]) -> Iterator[Task]:
+        """The swarms go on from where their particles were best, with new ones besides."""
         settings = replace(self.effort.chasers, points=self.effort.points)
-        return self._continued(swarm, CHASE, settings, swarm.plan.swarm, budget)
+        for team in range(len(self.problems)):
+            rng = stream(self.seed, CHASE, self.attempt, team, 0)
+            members = [swarm for swarm in leaders if swarm.team == team]
+            initial = []
+            for swarm in members:
+                kept = swarm.schedules.take(np.arange(min(len(swarm.schedules), settings.particles)))
+                initial += [kept, self._anywhere(settings.particles - len(kept), rng)]
+            if members:
+                promises, path = [swarm.promise for swarm in members], (CHASE, self.attempt, team, 1)
+                together = replace(settings, swarms=len(members))
+                yield Task(team, together, Schedules.joined(initial), promises, path)
 
-    def refiner(self, swarm: Swarm, budget: float) -> Swarm:
+    def _refiner(self, swarm: Swarm) -> Task:
         """The best schedule with more points, searched nearby."""
-        schedule = _with_more_points(swarm.plan.schedule, self.effort.added)
-        settings = replace(self.effort.refiners, points=len(schedule.dwell))
-        rng = stream(self.seed, REFINE, self.attempt, swarm.number, 0)
-        initial = nearby(schedule, settings.particles, self.effort.nearness, rng)
-        return self._continued(swarm, REFINE, settings, initial, budget)
+        count = self.effort.points + self.effort.added
+        settings = replace(self.effort.refiners, points=count)
+        path = (REFINE, self.attempt, swarm.team, swarm.number)
+        rng = stream(self.seed, *path, 0)
+        initial = nearby(swarm.schedules[0].split(count), settings.particles, self.effort.nearness, rng)
+        return Task(swarm.team, settings, initial, [swarm.promise], (*path, 1))
 
-    def _continued(
-        self, swarm: Swarm, stage: int, settings: PlanSettings, initial: Sequence[Schedule], budget: float
-    ) -> Swarm:
-        found = plan(
-            swarm.problem,
-            swarm.law,
-            settings,
-            seed=self.seed,
-            initial=initial,
-            region=swarm.region,
-            budget=budget,
-            path=(stage, self.attempt, swarm.number, 1),
-            callback=self.callback,
-        )
-        return replace(swarm, plan=found)
-
-
-def first_budget(scenario: Scenario, routes: Sequence[Route]) -> float:
-    """A time (s) that a plan should not need: twice that of the shortest route, with time to turn at either end."""
-    lengths = [route.length for route in routes] or [float(np.hypot(*(scenario.goal - scenario.start)[:2]))]
-    turn = np.pi / max(map(abs, scenario.turn_limits))
-    return 2.0 * (lengths[0] / top_speed(scenario) + float(turn))
-
-
-def _region(area: Floats, guides: Sequence[Guide]) -> tuple[Floats, Floats]:
-    """Bounds (3,) of the equilibrium points: the guides and some more, and two turns."""
-    places = np.vstack([area, *(guide.poses[:, :2] for guide in guides)])
-    low, high, turns = places.min(axis=0) - BEYOND, places.max(axis=0) + BEYOND, 2.0 * np.pi
-    return np.append(low, -turns), np.append(high, turns)
-
-
-def _tightened(swarms: Sequence[Swarm], budget: float) -> float:
-    return min([budget, *(swarm.plan.arrival_time for swarm in swarms if swarm.plan.is_free)])
+    def _anywhere(self, count: int, rng: np.random.Generator) -> Schedules:
+        return anywhere(self.region, self.effort.points, count, rng)
 
 
 def _leaders(swarms: Sequence[Swarm], count: int) -> list[Swarm]:
     """The best swarms, and those along the most promising guide: a little collision is soon mended."""
-    promise = min((swarm.guides[0].score for swarm in swarms if swarm.guides), default=0.0)
-    promising = [swarm for swarm in swarms if swarm.guides and swarm.guides[0].score == promise][: count // 2]
-    ranked = [swarm for swarm in sorted(swarms, key=_rank) if swarm not in promising]
+    promise = min(swarm.promise for swarm in swarms)
+    promising = [swarm for swarm in swarms if swarm.promise == promise < np.inf][: count // 2]
+    ranked = [swarm for swarm in sorted(swarms, key=_cost) if swarm not in promising]
     return promising + ranked[: count - len(promising)]
 
 
-def _rank(swarm: Swarm) -> tuple[bool, float]:
-    return swarm.plan.rank
-
-
-def _with_more_points(schedule: Schedule, added: int) -> Schedule:
-    """The same motion with the longest dwell times cut in two."""
-    points, dwell = schedule.points, schedule.dwell
-    for _ in range(added):
-        longest = int(np.argmax(dwell))
-        points = np.insert(points, longest, points[longest], axis=0)
-        dwell = np.insert(dwell, longest, 0.5 * dwell[longest])
-        dwell[longest + 1] -= dwell[longest]
-    return Schedule(points, dwell)
+def _cost(swarm: Swarm) -> float:
+    return swarm.cost

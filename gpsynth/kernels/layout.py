@@ -24,7 +24,10 @@ class Rows(NamedTuple):
     end: int  # 1, s
     diverged: int  # 1
     cost: int  # 1
-    near: int  # 4, clearance, exposure, depth and one row of scratch
+    before: int  # 1, the arrival measure at the tick before
+    share: int  # 1, of the last period, that lies behind the arrival
+    limit: int  # 1, of the toll
+    near: int  # 10, clearance, exposure, depth and seven rows of scratch
     plant: int  # q, parameters of the plant
     error: int  # n or 0, of the measured state
     acting: int  # m or 0, controls that have arrived
@@ -85,12 +88,32 @@ class Clock(NamedTuple):
 
 
 class World(NamedTuple):
-    """Obstacles; none when `position` is empty."""
+    """Obstacles and the robot's body; none when `position` is empty."""
 
-    position: Ints  # (2,) states that are x and y, or (0,)
-    circles: Floats  # (o, 5) x, y, vx, vy, radius with the robot's radius added
-    area: Floats  # (4,) x_low, x_high, y_low, y_high
+    position: Ints  # states that are x and y, (2,), and the heading, (3,), where the body has one; or (0,)
+    circles: Floats  # (o, 5) x, y, vx, vy, radius
+    area: Floats  # (4,) x_low, x_high, y_low, y_high, of the origin of the body
     margin: float  # m, less clearance than this counts as exposure
+    body: Floats  # (f, 3) circles of the robot: x, y in its own frame, radius
+    squares: Floats  # (r, c) m^2, of a distance field; (0, 0) without one
+    grid: Floats  # (3,) x, y of its first node and its spacing
+
+
+class Toll(NamedTuple):
+    """The least that a lane will have cost its planner, and how much it may: a lane that cannot keep its limit ends.
+
+    If the lane arrives no earlier than at s, it costs rate s + late max(0, s - due), and what exposure and depth cost.
+    """
+
+    limits: Floats  # (L,), or (0,): none
+    due: float  # s
+    rate: float  # 1/s
+    late: float  # 1/s
+    pace: float  # s/m: no state is nearer to its goal by a meter any sooner; 0: unknown
+    slack: float  # m, how near a goal counts as arrival
+    entry: float  # where there is any exposure
+    exposure: float  # 1/s
+    depth: float  # 1/(m s)
 
 
 _INTEGER, _NUMBER, _FLAG = types.int64, types.float64, types.boolean
@@ -99,7 +122,8 @@ CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, 
 LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
 CONDITIONS = types.NamedTuple((MATRIX, INTEGERS, _INTEGER, VECTOR, TENSOR, INTEGERS), Conditions)
 CLOCK = types.NamedTuple((VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER, _NUMBER), Clock)
-WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
+WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER, MATRIX, MATRIX, VECTOR), World)
+TOLL = types.NamedTuple((VECTOR, *[_NUMBER] * 8), Toll)
 
 Group = TypeVar("Group", bound=tuple[Any, ...])
 Array = TypeVar("Array", bound=np.ndarray[Any, Any])

@@ -23,19 +23,21 @@ from gpsynth.kernels.layout import (
     CONDITIONS,
     LANES,
     ROWS,
+    TOLL,
     WORLD,
     Clock,
     Code,
     Conditions,
     Lanes,
     Rows,
+    Toll,
     World,
 )
 from gpsynth.kernels.machine import execute, wrap
 from gpsynth.kernels.steps import advance
-from gpsynth.kernels.vectors import WIDTH, choose, magnitude, put, take
+from gpsynth.kernels.vectors import WIDTH, choose, magnitude, put, root, take
 
-ARRIVAL, END, COST, CLEARANCE, EXPOSURE, DEPTH, DIVERGED, TERMINAL = range(8)  # columns of the result
+ARRIVAL, END, COST, CLEARANCE, EXPOSURE, DEPTH, DIVERGED, SHARE, TERMINAL = range(9)  # columns of the result
 ENORMOUS = 1e10  # a state beyond it has diverged
 NUMBER = 3  # column of a block's picks that numbers its lanes
 INSTANT = 1e-9  # s; a clock reading this close to a switching time has reached it
@@ -44,8 +46,10 @@ _INTEGER = types.int64
 
 
 @part
-def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int, picks: Ints) -> None:
-    """Set a block up: constants, and for lanes [first, first + count) start, goal, target and parameters.
+def load(
+    w: Floats, rows: Rows, code: Code, lanes: Lanes, toll: Toll, first: int, count: int, picks: Ints
+) -> None:
+    """Set a block up: constants, and for lanes [first, first + count) start, goal, target, parameters and limit.
 
     picks (., 4) takes for each column what its lane has, and the number of the lane in the block.
     """
@@ -66,6 +70,8 @@ def load(w: Floats, rows: Rows, code: Code, lanes: Lanes, first: int, count: int
         picks[lane, NUMBER] = lane
         w[rows.alive, lane] = 1.0
         w[rows.arrival, lane] = np.inf
+        w[rows.before, lane] = np.inf
+        w[rows.limit, lane] = toll.limits[first + lane] if len(toll.limits) > 0 else np.inf
         w[rows.near, lane] = np.inf
 
 
@@ -119,7 +125,10 @@ def retarget(
 
 @part
 def judge(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, time: float) -> int:
-    """Mark the lanes that have arrived or diverged at `time`; the number of lanes still running."""
+    """Mark the lanes that have arrived or diverged at `time`; the number of lanes still running.
+
+    Of the period before an arrival, the share that lies behind it is the one that a linear measure would give.
+    """
     execute(code.instructions, code.ends[1], code.ends[2], w, count)
     for lane in range(0, count, WIDTH):
         alive, diverged = take(w, rows.alive, lane), take(w, rows.diverged, lane)
@@ -130,14 +139,42 @@ def judge(w: Floats, rows: Rows, code: Code, clock: Clock, n: int, count: int, t
             diverged = choose(runs, lost, diverged)
         put(w, rows.diverged, lane, diverged)
         alive = choose(diverged > 0.0, 0.0, alive)
-        arrival = take(w, rows.arrival, lane)
-        arrives = (alive > 0.0) & (take(w, code.arrival[0], lane) <= 0.0)
-        put(w, rows.arrival, lane, choose(arrives, choose(arrival > time, time, arrival), arrival))
+        arrival, measure = take(w, rows.arrival, lane), take(w, code.arrival[0], lane)
+        arrives = (alive > 0.0) & (measure <= 0.0)
+        first = arrives & (arrival > time)
+        share = measure / (measure - take(w, rows.before, lane))
+        put(w, rows.share, lane, choose(first, share, take(w, rows.share, lane)))
+        put(w, rows.before, lane, measure)
+        put(w, rows.arrival, lane, choose(first, time, arrival))
         put(w, rows.alive, lane, choose(arrives, 0.0 if clock.stop else 1.0, alive))
     running = 0
     for lane in range(count):
         running += 1 if w[rows.alive, lane] > 0.0 else 0
     return running
+
+
+@part
+def dismiss(w: Floats, rows: Rows, position: Ints, toll: Toll, count: int, time: float, running: int) -> int:
+    """End the lanes that have not arrived and cannot keep their limit; of `running` lanes how many are left."""
+    if len(toll.limits) == 0:
+        return running
+    for lane in range(0, count, WIDTH):
+        soonest = take(w, rows.alive, lane) * time
+        if toll.pace > 0.0:
+            x = take(w, rows.goal + position[0], lane) - take(w, rows.state + position[0], lane)
+            y = take(w, rows.goal + position[1], lane) - take(w, rows.state + position[1], lane)
+            ahead = root(x * x + y * y) - toll.slack
+            soonest = soonest + choose(ahead > 0.0, toll.pace * ahead, 0.0)
+        late = soonest - toll.due
+        cost = toll.rate * soonest + choose(late > 0.0, toll.late * late, 0.0)
+        exposure = take(w, rows.near + 1, lane)
+        price = toll.entry + toll.exposure * exposure + toll.depth * take(w, rows.near + 2, lane)
+        cost = cost + choose(exposure > 0.0, price, 0.0)
+        put(w, rows.alive, lane, choose(cost > take(w, rows.limit, lane), 0.0, take(w, rows.alive, lane)))
+    left = 0
+    for lane in range(count):
+        left += 1 if w[rows.alive, lane] > 0.0 else 0
+    return left
 
 
 @part
@@ -186,6 +223,7 @@ def store(
         out[COST] = np.inf if bad else w[rows.cost, lane]
         out[CLEARANCE], out[EXPOSURE] = w[rows.near, lane], w[rows.near + 1, lane]
         out[DEPTH], out[DIVERGED] = w[rows.near + 2, lane], 1.0 if bad else 0.0
+        out[SHARE] = w[rows.share, lane]
         for k in range(q):
             out[TERMINAL + k] = w[code.arrival[1 + k], lane]
         for i in range(n):
@@ -227,7 +265,20 @@ def workspace(rows: int, columns: int) -> Floats:
 
 @kernel(
     types.void(
-        *(ROWS, CODES, LANES, CONDITIONS, CLOCK, WORLD, _INTEGER, _INTEGER, _INTEGER, OUT_MATRIX, OUT_TENSOR)
+        *(
+            ROWS,
+            CODES,
+            LANES,
+            CONDITIONS,
+            CLOCK,
+            WORLD,
+            TOLL,
+            _INTEGER,
+            _INTEGER,
+            _INTEGER,
+            OUT_MATRIX,
+            OUT_TENSOR,
+        )
     )
 )
 def roll(
@@ -237,6 +288,7 @@ def roll(
     given: Conditions,
     clock: Clock,
     world: World,
+    toll: Toll,
     block: int,
     first: int,
     last: int,
@@ -246,7 +298,8 @@ def roll(
     """Run lanes [first, last), `block` at a time, into result (L, TERMINAL + q + n).
 
     `trace` (L, periods + 1, n + m + n) takes state, control and target at each tick unless its length is 0; what a
-    lane does after its end is not recorded. The control at the last tick is the one that would be applied next.
+    lane does after its end is not recorded. The control at the last tick is the one that would be applied next. A lane
+    that cannot keep its limit of the toll any more ends without arrival.
     """
     widest_vectors()
     n = lanes.starts.shape[1]
@@ -257,7 +310,7 @@ def roll(
     bends = len(world.position) > 0
     for begin in range(first, last, block):
         count = min(block, last - begin)
-        load(w, rows, code, lanes, begin, count, picks)
+        load(w, rows, code, lanes, toll, begin, count, picks)
         settle(w, rows, picks, given, count)
         passed[:] = 0
         shift[:] = 0.0
@@ -267,6 +320,7 @@ def roll(
             if lanes.ends.shape[1] > 0:
                 retarget(w, rows, code, lanes, clock, picks, passed, shift, ahead, time)
             running = judge(w, rows, code, clock, n, ahead, time)
+            running = dismiss(w, rows, world.position, toll, ahead, time, running)
             if clock.bound < np.inf and hopeless(w, rows, picks, clock.bound, count):
                 break
             if len(given.noise) > 0:
@@ -291,7 +345,7 @@ def roll(
                 if bends:
                     approach(
                         *(w, ahead, rows.base, rows.state, rows.slope, rows.slope + n, rows.alive, rows.near),
-                        *(world.position, world.circles, world.area, now, clock.step, world.margin),
+                        *(world, now, clock.step),
                     )
             for k in range(len(code.angles)):
                 row = rows.state + code.angles[k]

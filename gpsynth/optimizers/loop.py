@@ -49,13 +49,14 @@ class Result(Generic[S, Candidate]):
 
 
 def minimize(
-    cost: Callable[[Batch], npt.ArrayLike],
+    cost: Callable[..., npt.ArrayLike],
     optimizer: Search[S, Batch, Candidate],
     *,
     seed: int,
     budget: int,
     target: float = -inf,
     path: tuple[int, ...] = (0,),
+    limits: Callable[[S], Floats] | None = None,
     callback: Callable[[Progress[S]], bool | None] | None = None,
     progress: bool = False,
     checkpoint: Callable[[Progress[S]], None] | None = None,
@@ -63,10 +64,11 @@ def minimize(
 ) -> Result[S, Candidate]:
     """Search until the budget is spent, the target reached, or the optimizer or the callback stops.
 
-    `cost` maps a batch to one row of costs per candidate. The budget counts evaluations and is never exceeded:
-    the last generation is the last that fits whole. Generation g draws from stream(seed, *path, g), the initial
-    state from g = 0, so a resumed run equals an uninterrupted one bit for bit. `checkpoint` is called after every
-    generation, then `callback`, which stops the run by returning True. Raises OptimizerError for a budget
+    `cost` maps a batch to one row of costs per candidate; with `limits`, a function of the optimizer such as
+    `PSO.limits`, it is also given what each candidate must not exceed to matter. The budget counts evaluations and is
+    never exceeded: the last generation is the last that fits whole. Generation g draws from stream(seed, *path, g),
+    the initial state from g = 0, so a resumed run equals an uninterrupted one bit for bit. `checkpoint` is called
+    after every generation, then `callback`, which stops the run by returning True. Raises OptimizerError for a budget
     smaller than one generation and for costs that do not fit their batch.
     """
     _check(seed, budget, target)
@@ -84,7 +86,8 @@ def minimize(
             if now.evaluations + len(candidates) > budget:
                 reason = "budget spent"
                 break
-            costs = _costs(cost(candidates), len(candidates))
+            given = (candidates,) if limits is None else (candidates, limits(waiting))
+            costs = _costs(cost(*given), len(candidates))
             now = _advanced(optimizer, now, optimizer.tell(waiting, candidates, costs), costs)
             show(now.evaluations, now.history[-1][1] if now.history else inf)
             if checkpoint is not None:

@@ -36,7 +36,8 @@ class PSO:
     """A swarm of `size` particles in a box, all of them led by the best position seen by any.
 
     A particle that would leave the box stays on the wall, and its velocity across the wall is reversed and
-    multiplied by `bounce`. `x0` (k, d) are positions of the first k particles; the others start anywhere.
+    multiplied by `bounce`. `x0` (k, d) are positions of the first k particles; the others start anywhere. With several
+    `swarms` the particles are shared out, as many in a row to each, and are led by the best of their own swarm.
     """
 
     lower: Floats  # (d,)
@@ -49,10 +50,16 @@ class PSO:
     start_speed: float = 0.05  # largest first step, as a fraction of the range
     bounce: float = 0.3
     x0: Floats | None = None
+    swarms: int = 1
 
     def __post_init__(self) -> None:
         lower, upper = checked_box(self.lower, self.upper)
         check_whole("size", self.size, 1, OptimizerError)
+        check_whole("swarms", self.swarms, 1, OptimizerError)
+        if self.size % self.swarms:
+            raise OptimizerError(
+                f"size must be a multiple of the number of swarms, {self.swarms}, got {self.size}"
+            )
         checked_within("inertia", self.inertia, 0.0, 1.0)
         checked_at_least("cognitive", self.cognitive, 0.0)
         checked_at_least("social", self.social, 0.0)
@@ -65,17 +72,29 @@ class PSO:
 
     @classmethod
     def clerc(
-        cls, lower: npt.ArrayLike, upper: npt.ArrayLike, *, size: int = 32, x0: Floats | None = None
+        cls,
+        lower: npt.ArrayLike,
+        upper: npt.ArrayLike,
+        *,
+        size: int = 32,
+        x0: Floats | None = None,
+        swarms: int = 1,
     ) -> "PSO":
         """The constricted swarm of Clerc & Kennedy (2002), which contracts around what it has found."""
-        return cls(np.asarray(lower), np.asarray(upper), size, x0=x0)
+        return cls(np.asarray(lower), np.asarray(upper), size, x0=x0, swarms=swarms)
 
     @classmethod
     def seed(
-        cls, lower: npt.ArrayLike, upper: npt.ArrayLike, *, size: int = 32, x0: Floats | None = None
+        cls,
+        lower: npt.ArrayLike,
+        upper: npt.ArrayLike,
+        *,
+        size: int = 32,
+        x0: Floats | None = None,
+        swarms: int = 1,
     ) -> "PSO":
         """The paper's coefficients; without the limit on speed the velocities grow by 3.3 % a generation (RMS)."""
-        return cls(np.asarray(lower), np.asarray(upper), size, 1.0, 0.65, 0.65, x0=x0)
+        return cls(np.asarray(lower), np.asarray(upper), size, 1.0, 0.65, 0.65, x0=x0, swarms=swarms)
 
     def init(self, rng: np.random.Generator) -> PSOState:
         """Particles at the given and at random positions, not yet evaluated."""
@@ -88,12 +107,12 @@ class PSO:
         """Next positions, (size, d): the first ones as they are, then one step each."""
         if state.generation == 0:
             return state.x.copy(), state
-        leader = state.best_x[state.best_costs.argmin()]
+        leaders = np.repeat(state.best_x[self.leaders(state)], self.size // self.swarms, axis=0)
         r1, r2 = rng.random((2, *state.x.shape))
         v = (
             self.inertia * state.v
             + self.cognitive * r1 * (state.best_x - state.x)
-            + self.social * r2 * (leader - state.x)
+            + self.social * r2 * (leaders - state.x)
         )  # eq. 15
         limit = self.speed * (self.upper - self.lower)
         v = np.minimum(np.maximum(v, -limit), limit)
@@ -112,6 +131,16 @@ class PSO:
             best_x=sealed(np.where(better[:, None], x, state.best_x)),
             best_costs=sealed(np.where(better, costs, state.best_costs)),
         )
+
+    def leaders(self, state: PSOState) -> npt.NDArray[np.intp]:
+        """The number of the best particle of each swarm, (swarms,)."""
+        costs = state.best_costs.reshape(self.swarms, -1)
+        numbers: npt.NDArray[np.intp] = costs.argmin(axis=1) + np.arange(self.swarms) * costs.shape[1]
+        return numbers
+
+    def limits(self, state: PSOState) -> Floats:
+        """Costs (size,): a candidate that costs more changes nothing, however much more it is."""
+        return state.best_costs
 
     def best(self, state: PSOState) -> tuple[Floats, float]:
         """The best of the personal bests."""

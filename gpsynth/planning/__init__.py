@@ -1,7 +1,7 @@
 """Stage 2: with the law fixed, search the equilibrium points that bring the plant to its goal in least time."""
 
 from gpsynth.planning.objective import Objective
-from gpsynth.planning.rounds import Plan, plan
+from gpsynth.planning.rounds import Particles, Plan, plan, plans
 from gpsynth.planning.settings import PlanSettings
 
-__all__ = ["Objective", "Plan", "PlanSettings", "plan"]
+__all__ = ["Objective", "Particles", "Plan", "PlanSettings", "plan", "plans"]

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from gpsynth.arrays import Floats
 from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.kernels.layout import Toll, readonly
 from gpsynth.law import Law
 from gpsynth.planning.settings import PlanSettings
 from gpsynth.schedule import Schedule
@@ -15,7 +16,7 @@ Flags = npt.NDArray[np.bool_]
 
 NARROW = 0.2  # m; being in collision for a second weighs as much as this depth
 STEEPNESS = 8.0  # 1/(m s) of the obstacle term
-INSTANT = 1e-9  # s; a clock reading this close to a switching time has reached it
+ROUNDING = 1e-9  # of a limit: what is above it by no more is not above it
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +31,10 @@ class Objective:
     settings: PlanSettings
     budget: float
 
-    def __call__(self, vectors: Floats) -> Floats:
-        """Costs (N,)."""
+    def __call__(self, vectors: Floats, limits: Floats | None = None) -> Floats:
+        """Costs (N,); what costs more than its limit (N,) need not be rolled out to its end, and costs more anyway."""
         points, dwell = self.schedules(vectors)
-        rollouts = self.rollouts(points, dwell)
-        return self.costs(rollouts, points, dwell)
+        return self.costs(self.rollouts(points, dwell, limits), points)
 
     def schedules(self, vectors: Floats) -> tuple[Floats, Floats]:
         """Points (N, k, n) and dwell times (N, k) of vectors (N, d)."""
@@ -50,18 +50,19 @@ class Objective:
         points, dwell = self.schedules(vector[np.newaxis])
         return Schedule(points[0], dwell[0])
 
-    def rollouts(self, points: Floats, dwell: Floats) -> Rollouts:
-        """Rollouts (N, 1), which end when they can no longer win."""
+    def rollouts(self, points: Floats, dwell: Floats, limits: Floats | None = None) -> Rollouts:
+        """Rollouts (N, 1), which end when they can no longer win: at once if they are given limits (N,) of cost."""
         problem, settings = self.evaluator.problem, self.settings
         longest = settings.patience * self.budget + (1.0 if settings.patience > 1.0 else 0.0)
         horizon = min(problem.horizon, longest)
-        return self.evaluator.of_schedules(self.law, points, dwell, horizon, reach=settings.reach)
+        toll = self._toll(limits) if limits is not None and problem.stop else None
+        return self.evaluator.of_schedules(self.law, points, dwell, horizon, reach=settings.reach, toll=toll)
 
-    def costs(self, rollouts: Rollouts, points: Floats, dwell: Floats) -> Floats:
+    def costs(self, rollouts: Rollouts, points: Floats) -> Floats:
         """Costs (N,) of eq. 17; infinity where a rollout diverged."""
         settings = self.settings
         arrived = np.isfinite(rollouts.arrival[:, 0])
-        used = np.where(arrived, self.arrivals(rollouts, points, dwell), rollouts.end[:, 0])
+        used = np.where(arrived, self.arrivals(rollouts), rollouts.end[:, 0])
         error = self.errors(rollouts.final[:, 0])
         if settings.obstacles == "path":
             error = np.where(arrived, 0.0, error)  # within the tolerance only time counts
@@ -100,34 +101,35 @@ class Objective:
 
     def covered(self, points: Floats) -> Floats:
         """How many of the points (N, k, n) of each schedule lie in an obstacle, as it is at time 0."""
-        world = self.evaluator.world
-        if not len(world.position):
+        problem = self.evaluator.problem
+        if problem.obstacles is None:
             return np.zeros(len(points))
-        places = points[:, :, np.newaxis, world.position]  # (N, k, 1, 2)
-        gaps = np.hypot(*np.moveaxis(places - world.circles[:, :2], -1, 0)) - world.circles[:, 4]
-        inside: Floats = np.sum(np.any(gaps < 0.0, axis=2), axis=1, dtype=np.float64)
+        names = problem.plant.state_names
+        poses = points[..., [names.index(name) for name in problem.obstacles.position]]
+        gaps = problem.obstacles.gaps(poses.reshape(-1, poses.shape[-1])).reshape(points.shape[:2])
+        inside: Floats = np.sum(gaps < 0.0, axis=1, dtype=np.float64)
         return inside
 
-    def arrivals(self, rollouts: Rollouts, points: Floats, dwell: Floats) -> Floats:
-        """Arrival times (N,) between the control periods, so that the cost has no steps of one period.
-
-        The arrival measure is taken as linear in the last period, whose beginning is found backwards along the rates
-        at its end. Where points are left as soon as they are reached, the target is not known, and under draws the
-        control that acts is not; then the tick counts.
-        """
-        times = rollouts.arrival[:, 0].copy()
-        rows = np.flatnonzero(np.isfinite(times) & (times > 0.0))
-        problem, period = self.evaluator.problem, self.evaluator.problem.period
-        if not len(rows) or self.settings.reach > 0.0 or problem.draws is not None:
-            return times
-        states, ends = rollouts.final[rows, 0], times[rows, np.newaxis]
-        goals = np.broadcast_to(problem.goal, states.shape)
-        due = np.sum(ends - period >= np.cumsum(dwell[rows], axis=1) - INSTANT, axis=1)
-        targets = np.concatenate([points[rows], goals[:, np.newaxis]], axis=1)[np.arange(len(rows)), due]
-        inputs = np.hstack([states, self.law(states, targets), goals, ends])
-        rates = problem.rates(inputs, problem.plant.nominal)[:, : states.shape[1]]
-        after = problem.arrival(np.hstack([states, goals]))[:, 0]
-        before = problem.arrival(np.hstack([states - period * rates, goals]))[:, 0]
-        share = after / np.where(before > after, after - before, -np.inf)
-        times[rows] -= period * np.clip(share, 0.0, 1.0)
+    def arrivals(self, rollouts: Rollouts) -> Floats:
+        """Arrival times (N,) between the control periods, so that the cost has no steps of one period."""
+        behind = self.evaluator.problem.period * rollouts.share[:, 0]
+        times: Floats = rollouts.arrival[:, 0] - behind
         return times
+
+    def _toll(self, limits: Floats) -> Toll:
+        """What a rollout will cost at least, eq. 17, against the limits (N,); arrival is always at the goal."""
+        settings, problem, world = self.settings, self.evaluator.problem, self.evaluator.world
+        on_path = settings.obstacles == "path"
+        gamma = settings.gamma if on_path else 0.0
+        slack = float(np.hypot(*problem.tolerance[world.position])) if len(world.position) else 0.0
+        return Toll(
+            limits=readonly(limits * (1.0 + ROUNDING)),
+            due=self.budget,
+            rate=settings.beta / self.budget,
+            late=settings.beta,
+            pace=1.0 / settings.top_speed if len(world.position) else 0.0,
+            slack=slack,
+            entry=gamma,
+            exposure=gamma * STEEPNESS * NARROW,
+            depth=gamma * STEEPNESS,
+        )

@@ -5,7 +5,7 @@ rounds, so a cost never depends on what was evaluated before it. Personal bests 
 that kept an old cost would be unbeatable, and the swarm would freeze.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -32,10 +32,18 @@ from gpsynth.optimizers import (
 from gpsynth.planning.objective import Objective
 from gpsynth.planning.settings import PlanSettings
 from gpsynth.problem import Problem
-from gpsynth.schedule import Schedule
+from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import Trajectory, simulate
 
 History = tuple[tuple[int, float], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Particles:
+    """The best schedule of every particle: where another search can go on."""
+
+    schedules: Schedules
+    costs: Floats  # (N,) of eq. 17
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +58,7 @@ class Plan:
     cost: float  # eq. 17 under the T+ it was found with
     evaluations: int
     history: History  # (evaluations, T+ in s) at the beginning and after every round
-    swarm: tuple[Schedule, ...]  # the best of every particle: where another search can go on
+    particles: Particles
 
     @property
     def is_free(self) -> bool:
@@ -69,7 +77,7 @@ def plan(  # noqa: PLR0913 names each choice as a keyword
     settings: PlanSettings = PlanSettings(),
     *,
     seed: int = 0,
-    initial: Sequence[Schedule] = (),
+    initial: Sequence[Schedule] | Schedules = (),
     region: tuple[Floats, Floats] | None = None,
     budget: float | None = None,
     path: tuple[int, ...] = (0,),
@@ -82,27 +90,70 @@ def plan(  # noqa: PLR0913 names each choice as a keyword
     default `default_region`. `callback` is called after every round and stops the search by returning True. The same
     seed and path give the same plan for any number of threads. Raises ProblemError if the parts do not fit together.
     """
+    found = plans(
+        problem,
+        law,
+        settings,
+        seed=seed,
+        initial=initial,
+        region=region,
+        budget=budget,
+        path=path,
+        threads=threads,
+    )
+    for best in found:
+        if callback is not None and callback(best):
+            break
+    return best
+
+
+def plans(  # noqa: PLR0913 names each choice as a keyword
+    problem: Problem,
+    law: Law,
+    settings: PlanSettings = PlanSettings(),
+    *,
+    seed: int = 0,
+    initial: Sequence[Schedule] | Schedules = (),
+    region: tuple[Floats, Floats] | None = None,
+    budget: float | None = None,
+    path: tuple[int, ...] = (0,),
+    threads: int = 1,
+) -> Iterator[Plan]:
+    """The best schedule after every round of `plan`, the first as soon as the initial schedules have been tried.
+
+    Whoever stops asking stops the search, and has the best plan so far.
+    """
     _check(problem, law, settings, initial)
     evaluator = Evaluator(problem, threads=threads, margin=settings.margin)
     objective = Objective(evaluator, law, settings, budget or problem.horizon)
     optimizer = _optimizer(objective, region or default_region(problem), initial)
-    size = settings.particles * settings.iterations
+    limits = optimizer.limits if isinstance(optimizer, PSO) else None
+    size = settings.particles * settings.swarms
     history: History = ((0, objective.budget),)
-    found = minimize(objective, optimizer, seed=seed, path=path, budget=size)
-    best = _plan(objective, found, history)
-    for number in range(1, settings.rounds + 1):
-        if best.is_admissible and best.arrival_time < objective.budget:
+    best, start, end = None, None, 0
+    for length in _lengths(settings):
+        end += size * length
+        found = minimize(objective, optimizer, seed=seed, path=path, budget=end, limits=limits, resume=start)
+        latest = _plan(objective, found, history, best)
+        before = objective
+        if latest.is_admissible and latest.arrival_time < objective.budget:
             # Algorithm 1: T+ <- T_used, and with it the switching step
-            objective = replace(objective, budget=best.arrival_time)
+            objective = replace(objective, budget=max(latest.arrival_time, problem.period))
         history = (*history, (found.evaluations, objective.budget))
-        best = replace(best, evaluations=found.evaluations, history=history)
-        if (callback is not None and callback(best)) or number == settings.rounds:
-            break
-        start, end = rescored(found, objective), found.evaluations + size
-        found = minimize(objective, optimizer, seed=seed, path=path, budget=end, resume=start)
-        latest = _plan(objective, found, history)
-        best = latest if latest.rank < best.rank else replace(best, swarm=latest.swarm)
-    return best
+        best = replace(latest, evaluations=found.evaluations, history=history)
+        yield best
+        start = found.progress if objective is before else rescored(found, objective)
+        end += start.evaluations - found.evaluations
+
+
+def _lengths(settings: PlanSettings) -> list[int]:
+    """The generations of each round: few at first, when T+ is far off, then `iterations`."""
+    left, length, lengths = settings.rounds * settings.iterations, 1, list[int]()
+    while left:
+        lengths.append(min(length, settings.iterations, left))
+        left -= lengths[-1]
+        length *= 2
+    return lengths
 
 
 def default_region(problem: Problem) -> tuple[Floats, Floats]:
@@ -121,56 +172,70 @@ def default_region(problem: Problem) -> tuple[Floats, Floats]:
     return np.where(angle, -turns, low - beyond), np.where(angle, turns, high + beyond)
 
 
-def vector_of(schedule: Schedule, settings: PlanSettings) -> Floats:
-    """The numbers of a schedule that are searched, (d,)."""
-    free = schedule.points.ravel()
-    return free if settings.dwell is None else np.concatenate([free, schedule.dwell])
+def vectors_of(initial: Sequence[Schedule] | Schedules, settings: PlanSettings) -> Floats:
+    """The numbers of schedules that are searched, (N, d)."""
+    schedules = initial if isinstance(initial, Schedules) else Schedules.of(initial)
+    free = schedules.points.reshape(len(schedules), -1)
+    return free if settings.dwell is None else np.hstack([free, schedules.dwell])
 
 
 def _optimizer(
-    objective: Objective, region: tuple[Floats, Floats], initial: Sequence[Schedule]
+    objective: Objective, region: tuple[Floats, Floats], initial: Sequence[Schedule] | Schedules
 ) -> Optimizer[Any]:
     settings = objective.settings
     lower, upper = (np.tile(bound, settings.points) for bound in region)
     if settings.dwell is not None:
         shortest, longest = (np.full(settings.points, time) for time in settings.dwell)
         lower, upper = np.concatenate([lower, shortest]), np.concatenate([upper, longest])
-    vectors = [np.clip(vector_of(each, settings), lower, upper) for each in initial[: settings.particles]]
-    x0 = np.array(vectors).reshape(-1, len(lower)) if vectors else None
+    size = settings.particles * settings.swarms
+    x0 = np.clip(vectors_of(initial, settings)[:size], lower, upper) if len(initial) else None
     if settings.optimizer == "cmaes":
         first = None if x0 is None else x0[int(np.argmin(objective(x0)))]
-        return CMAES(lower, upper, size=settings.particles, sigma=settings.spread, restarts=0, x0=first)
+        return CMAES(lower, upper, size=size, sigma=settings.spread, restarts=0, x0=first)
     if settings.optimizer == "shade":
-        return DifferentialEvolution(lower, upper, size=settings.particles, x0=x0)
+        return DifferentialEvolution(lower, upper, size=size, x0=x0)
     swarm = PSO.clerc if settings.optimizer == "clerc" else PSO.seed
-    return swarm(lower, upper, size=settings.particles, x0=x0)
+    return swarm(lower, upper, size=size, x0=x0, swarms=settings.swarms)
 
 
-def _plan(objective: Objective, found: Result[Any, Floats], history: History) -> Plan:
-    """The best position of a search under its T+, as a plan."""
+def _plan(objective: Objective, found: Result[Any, Floats], history: History, before: Plan | None) -> Plan:
+    """The best position of a search under its T+, as a plan, unless the one before is better."""
     points, dwell = objective.schedules(found.x[np.newaxis])
+    particles = _particles(objective, found.state)
     rollouts = objective.rollouts(points, dwell)
-    schedule = Schedule(points[0], dwell[0])
-    problem, horizon = objective.evaluator.problem, float(rollouts.end[0, 0])
+    arrival, is_admissible = objective.arrivals(rollouts)[0], objective.admissible(rollouts, points)[0]
+    cost = objective.costs(rollouts, points)[0]
+    rank = (False, arrival) if is_admissible else (True, cost)
+    if before is not None and before.rank <= rank:
+        return replace(before, particles=particles)
+    schedule, problem = Schedule(points[0], dwell[0]), objective.evaluator.problem
+    trajectory = simulate(
+        problem,
+        objective.law,
+        schedule=schedule,
+        horizon=float(rollouts.end[0, 0]),
+        reach=objective.settings.reach,
+    )
     return Plan(
         schedule=schedule,
-        trajectory=simulate(
-            problem, objective.law, schedule=schedule, horizon=horizon, reach=objective.settings.reach
-        ),
-        arrival_time=float(objective.arrivals(rollouts, points, dwell)[0]),
+        trajectory=trajectory,
+        arrival_time=float(arrival),
         clearance=float(rollouts.clearance[0, 0]),
-        is_admissible=bool(objective.admissible(rollouts, points)[0]),
-        cost=float(objective.costs(rollouts, points, dwell)[0]),
+        is_admissible=bool(is_admissible),
+        cost=float(cost),
         evaluations=found.evaluations,
         history=history,
-        swarm=tuple(map(objective.schedule, _memory(found.state))),
+        particles=particles,
     )
 
 
-def _memory(state: PSOState | DifferentialEvolutionState | CMAESState) -> Floats:
+def _particles(objective: Objective, state: PSOState | DifferentialEvolutionState | CMAESState) -> Particles:
+    if isinstance(state, PSOState):
+        return Particles(Schedules(*objective.schedules(state.best_x)), state.best_costs)
     if isinstance(state, DifferentialEvolutionState):
-        return state.x
-    return state.best_x if isinstance(state, PSOState) else state.best_x[np.newaxis]
+        return Particles(Schedules(*objective.schedules(state.x)), state.costs)
+    best = Schedules(*objective.schedules(state.best_x[np.newaxis]))
+    return Particles(best, np.array([state.best_cost]))
 
 
 def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
@@ -186,16 +251,21 @@ def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
     return replace(found.progress, state=state, evaluations=found.evaluations + spent, history=())
 
 
-def _check(problem: Problem, law: Law, settings: PlanSettings, initial: Sequence[Schedule]) -> None:
+def _check(
+    problem: Problem, law: Law, settings: PlanSettings, initial: Sequence[Schedule] | Schedules
+) -> None:
     check_kind("problem", problem, Problem)
     check_kind("settings", settings, PlanSettings)
     if len(problem.starts) != 1:
         raise ProblemError(f"a plan begins at one start; the problem has {len(problem.starts)}")
     check_law(problem, law)
-    for schedule in initial:
+    given = [initial.points[0]] if isinstance(initial, Schedules) and len(initial) else []
+    for schedule in () if isinstance(initial, Schedules) else initial:
         check_kind("an initial schedule", schedule, Schedule)
-        if schedule.points.shape != (settings.points, problem.starts.shape[1]):
+        given.append(schedule.points)
+    for points in given:
+        if points.shape != (settings.points, problem.starts.shape[1]):
             raise ProblemError(
-                f"an initial schedule has points of shape {schedule.points.shape}; "
+                f"an initial schedule has points of shape {points.shape}; "
                 f"expected ({settings.points}, {problem.starts.shape[1]})"
             )

@@ -24,24 +24,31 @@ class PlanSettings:
     gamma: float = 5.0  # weight of the obstacles
     margin: float = 0.004  # m, clearance that counts as none
     optimizer: Method = "clerc"  # a swarm, "seed" being the paper's; differential evolution; CMA-ES
-    particles: int = 64
-    iterations: int = 15  # in a round
-    rounds: int = 10  # T+ is tightened between them
+    swarms: int = 1  # side by side, sharing T+ alone; `seed` and `clerc` only
+    particles: int = 64  # of each swarm
+    iterations: int = 15  # in a round; the first rounds are shorter
+    rounds: int = 10  # so many times `iterations` in all; T+ is tightened between rounds
     spread: float = 0.05  # first step of CMA-ES, as a fraction of the range
     patience: float = 1.5  # rollouts end after so many T+, and a second
+    top_speed: float = inf  # m/s: known to be the greatest, it shows sooner which rollouts cannot win
     reach: float = 0.0  # distance from its point at which the next one is due at once; 0: dwell times alone
 
     def __post_init__(self) -> None:
-        for name in ("points", "particles", "iterations", "rounds"):
+        for name in ("points", "swarms", "particles", "iterations", "rounds"):
             check_whole(f"{name} of a plan", getattr(self, name), 1)
         for name in ("alpha", "beta", "gamma", "margin", "spread", "patience", "reach"):
             value = getattr(self, name)
             check_number(f"{name} of a plan", value)
             if not 0.0 <= value < inf:
                 raise ProblemError(f"{name} of a plan must be finite and at least 0, not {value}")
+        check_number("top_speed of a plan", self.top_speed)
+        if not self.top_speed > 0.0:
+            raise ProblemError(f"top_speed of a plan must be greater than 0, not {self.top_speed}")
         for name, choices in (("obstacles", get_args(Clear)), ("optimizer", get_args(Method))):
             if getattr(self, name) not in choices:
                 raise ProblemError(f"{name} of a plan must be one of {choices}, not {getattr(self, name)!r}")
+        if self.optimizer in ("shade", "cmaes") and self.swarms > 1:
+            raise ProblemError(f"the optimizer {self.optimizer!r} searches alone; swarms is {self.swarms}")
         if self.dwell is not None:
             shortest, longest = shaped("dwell, (shortest, longest) in s,", self.dwell, (2,))
             if not 0.0 <= shortest < longest:

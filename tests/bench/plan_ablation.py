@@ -28,7 +28,7 @@ from gpsynth.law import Law
 from gpsynth.optimizers import PSO
 from gpsynth.planning import Objective, PlanSettings, plan
 from gpsynth.planning.literal import plan_literally
-from gpsynth.planning.rounds import default_region
+from gpsynth.planning.rounds import default_region, vectors_of
 from gpsynth.seeds import stream
 from gpsynth.simulation import simulate
 from tests.bench.measure import machine, pin
@@ -56,7 +56,7 @@ class Variant:
         problem, guides = problem_of(scenario, law), guides_of(scenario, count=5)
         budget = min(LOOSE * guides[0].duration, problem.horizon)
         count = self.settings.particles * 3 // 4 if self.guided else 0
-        initial = schedules_along(guides, self.settings.points, count, stream(seed, 0))
+        initial = schedules_along(guides, self.settings.points, count, stream(seed, 0)) if count else ()
         if not self.literal:
             found = plan(problem, law, self.settings, seed=seed, initial=initial, budget=budget)
             return found.trajectory.u
@@ -65,8 +65,8 @@ class Variant:
         lower, upper = (
             np.append(np.tile(bound, k), np.full(k, t)) for bound, t in zip(box, (0.0, 4.0), strict=True)
         )
-        vectors = np.array([[*each.points.ravel(), *each.dwell] for each in initial])
-        swarm = PSO.clerc(lower, upper, size=self.settings.particles, x0=np.clip(vectors, lower, upper))
+        x0 = np.clip(vectors_of(initial, self.settings), lower, upper)
+        swarm = PSO.clerc(lower, upper, size=self.settings.particles, x0=x0)
         best = plan_literally(objective, swarm, seed=seed, evaluations=self.settings.particles * GENERATIONS)
         return simulate(problem, law, schedule=best.schedule).u
 

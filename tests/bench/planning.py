@@ -19,7 +19,6 @@ from applications.rosbot.polar_law import HOT, SATURATING, polar_law
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.scenario_file import read_scenario
 from gpsynth.law import Law
-from gpsynth.planning import Plan
 
 ROOT = Path(__file__).parents[2]
 SHARED = ROOT.parent / "shared"
@@ -42,8 +41,8 @@ def attempt(scenario: Scenario, laws: Sequence[Law], seed: int) -> Attempt:
     """Plan on one core."""
     began, found = time.process_time(), []
 
-    def note(plan: Plan) -> None:
-        if plan.is_free and not found:
+    def note(report: PlanReport) -> None:
+        if report.status == "planned" and not found:
             found.append(time.process_time() - began)
 
     report = plan_scenario(scenario, laws, seed=seed, callback=note)

@@ -58,7 +58,7 @@ def guides_of(scenario: Scenario, *, count: int = 3) -> list[Guide]:
 
     They are the ones that gpsynth's own swarms begin at; those that cut obstacles come last.
     """
-    found = [guides_along(scenario, route) for route in routes(scenario, count=count, margin=MARGIN)]
+    found = guides_along(scenario, routes(scenario, count=count, margin=MARGIN))
     bests = [guides[0] for guides in (*found, direct_guides(scenario)) if guides]
     return sorted(bests, key=lambda guide: (guide.score > guide.duration + BLOCKED, guide.score))
 

@@ -4,30 +4,24 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from applications.rosbot.planner import PERIOD, plan_scenario
+from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.stabilizer import default_law
-from gpsynth.planning import Plan
 from tests.bench.planners.attempt import Answer, Watch
 
 
 def equilibria(scenario: Scenario, seed: int, watch: Watch) -> Iterator[Answer]:
-    """The plans that get better while it searches, and the one that it hands out."""
+    """The plans that get better while it searches; it ends by itself, or when the time is up."""
     found: list[Answer] = []
     best = np.inf
 
-    def note(plan: Plan) -> None:
+    def note(report: PlanReport) -> bool:
         nonlocal best
-        if plan.is_free and plan.arrival_time < best:
-            best = plan.arrival_time
-            found.append(_answer(watch, plan))
+        if report.plan is not None and report.plan.arrival_time < best:
+            best = report.plan.arrival_time
+            controls = report.plan.trajectory.u
+            found.append(Answer(watch.spent, controls, np.full(len(controls), PERIOD)))
+        return watch.is_over
 
-    report = plan_scenario(scenario, [default_law()], seed=seed, callback=note)
-    if report.plan is not None:
-        found.append(_answer(watch, report.plan))
+    plan_scenario(scenario, [default_law()], seed=seed, callback=note)
     yield from found
-
-
-def _answer(watch: Watch, plan: Plan) -> Answer:
-    controls = plan.trajectory.u
-    return Answer(watch.spent, controls, np.full(len(controls), PERIOD))

@@ -39,7 +39,7 @@ def paper_swarm(scenario: Scenario, seed: int, watch: Watch) -> Iterator[Answer]
         nonlocal now, best_cost, best
         points, dwell = now.schedules(vectors)
         rollouts = now.rollouts(points, dwell)
-        found = np.nan_to_num(now.costs(rollouts, points, dwell), posinf=1e6)
+        found = np.nan_to_num(now.costs(rollouts, points), posinf=1e6)
         if found.min() < best_cost:
             best_cost, best = found.min(), now.schedule(vectors[found.argmin()])
         now = replace(now, budget=min(now.budget, float(rollouts.arrival.min())))
