@@ -1,0 +1,71 @@
+"""A broad phase for many circles at rest: which of them can be the nearest from anywhere in a cell of a grid.
+
+Let g_k(p) be the gap between p and circle k, and c the center of a cell with half diagonal h. Along a chord that begins
+in the cell and is at most `reach` long, no gap differs from that at c by more than h + reach. So the circle that is
+nearest at some point of it has a gap at c of at most min_j g_j(c) + 2 (h + reach): only such ones are looked at there.
+The least gap along the chord is that over all circles, to the last bit, as a minimum is one of its arguments.
+"""
+
+import math
+
+import numpy as np
+from numba import types
+
+from gpsynth.arrays import Floats, Ints
+from gpsynth.kernels.compile import MATRIX, OUT_INTEGERS, OUT_VECTOR, VECTOR, kernel
+from gpsynth.kernels.layout import Buckets, sealed
+
+MANY = 24  # circles at rest from which on the broad phase pays
+CELLS = 16  # of the grid, a circle
+AROUND = (
+    0.15  # of their extent, that the grid reaches beyond their centers; farther out all of them are looked at
+)
+SLACK = 1e-6  # m, for rounding: of where a cell ends, and of gaps
+
+NONE = sealed(Buckets(np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32), np.zeros(6)))
+
+
+def buckets(circles: Floats) -> Buckets:
+    """The buckets of circles at rest, (o, 5) x, y, vx, vy, radius; none where all of them are as soon looked at."""
+    if len(circles) < MANY:
+        return NONE
+    low, high = circles[:, :2].min(axis=0), circles[:, :2].max(axis=0)
+    low, high = low - AROUND * (high - low), high + AROUND * (high - low)
+    side = math.sqrt(float(np.prod(high - low)) / (CELLS * len(circles)))
+    if not side > SLACK:
+        return NONE
+    columns, rows = (int(count) for count in np.ceil((high - low) / side))
+    lattice = np.array([low[0], low[1], side, columns, rows, 0.5 * side])
+    firsts = np.zeros(columns * rows + 1, dtype=np.int32)
+    gaps = np.empty(len(circles))
+    fill(circles, lattice, gaps, firsts, np.empty(0, dtype=np.int32))
+    firsts = np.concatenate([[0], np.cumsum(firsts[1:])]).astype(np.int32)
+    members = np.empty(firsts[-1], dtype=np.int32)
+    fill(circles, lattice, gaps, firsts, members)
+    return sealed(Buckets(firsts, members, lattice))
+
+
+@kernel(types.void(MATRIX, VECTOR, OUT_VECTOR, OUT_INTEGERS, OUT_INTEGERS))
+def fill(circles: Floats, lattice: Floats, gaps: Floats, firsts: Ints, members: Ints) -> None:
+    """Count the circles of every cell into `firsts`, one place behind; or if there are `members`, write their numbers.
+
+    gaps: room for as many numbers as there are circles.
+    """
+    left, low, side, columns, rows = lattice[0], lattice[1], lattice[2], int(lattice[3]), int(lattice[4])
+    spread = 2.0 * (side * math.sqrt(0.5) + lattice[5] + SLACK)
+    for cell in range(rows * columns):
+        x, y = left + side * (cell % columns + 0.5), low + side * (cell // columns + 0.5)
+        least = np.inf
+        for k in range(len(circles)):
+            dx, dy = x - circles[k, 0], y - circles[k, 1]
+            gap = math.sqrt(dx * dx + dy * dy) - circles[k, 4]
+            gaps[k] = gap
+            least = gap if gap < least else least
+        count = 0
+        for k in range(len(circles)):
+            if gaps[k] <= least + spread:
+                if len(members) > 0:
+                    members[firsts[cell] + count] = k
+                count += 1
+        if len(members) == 0:
+            firsts[cell + 1] = count
