@@ -20,7 +20,7 @@ def scattered(count: int, seed: int) -> np.ndarray:
     return np.column_stack([places, np.zeros((count, 2)), rng.uniform(0.0, 0.6, count)])
 
 
-@pytest.mark.parametrize("count", [24, 200])
+@pytest.mark.parametrize("count", [48, 200])
 def test_the_nearest_circle_is_in_the_bucket(count):
     circles, rng = scattered(count, 1), stream(2)
     cells = broad.buckets(circles)
