@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 Found = Sequence[tuple[float, float]]  # (s, T / T_ref) of every plan of a run
 COLORS = (BLUE, BLACK, ORANGE, GREEN, RED, SKY, GRAY, "#CC79A7", "#8C6D1F")
-LONGEST = 20.0  # s
+SHORTEST, LONGEST = 0.01, 10.0  # s
 
 
 def quality_figure(runs: Mapping[str, Sequence[Found]]) -> "Figure":
@@ -20,7 +20,7 @@ def quality_figure(runs: Mapping[str, Sequence[Found]]) -> "Figure":
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    instants = np.geomspace(0.02, LONGEST, 400)
+    instants = np.geomspace(SHORTEST, LONGEST, 400)
     with rc_context(dict(STYLE)):
         figure = Figure(figsize=(6.0, 3.6), layout="constrained")
         axes = figure.subplots()
