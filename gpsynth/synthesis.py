@@ -80,6 +80,10 @@ class SynthesisResult:
         """The law of the best entry."""
         return self.best.law
 
+    def __repr__(self) -> str:
+        best = f", best: {'; '.join(self.law.formulas())}" if self.front else ""
+        return f"<SynthesisResult of {len(self.front)} laws{best}>"
+
     def __str__(self) -> str:
         return self.table()
 

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from types import MappingProxyType
 
 import click
 
@@ -21,7 +22,7 @@ from gpsynth.cli import (
 
 PATH = click.Path(path_type=Path)
 SEED = 3  # of the law that comes along
-NO_PLAN = 3  # exit code where the goal is unreachable or no plan was found
+EXIT_CODES = MappingProxyType({"planned": 0, "unreachable": 3, "not_found": 4})
 resume_option = click.option(
     "--resume", is_flag=True, help="Go on with the synthesis in the run folder, other options being the same."
 )
@@ -54,7 +55,7 @@ def demo(out: Path, short: bool, resume: bool, seed: int, threads: int) -> int:
     with status(LOADING):
         from applications.rosbot.demo import run_demo
     plans = run_demo(out, seed=seed, short=short, resume=resume, threads=threads)
-    return 0 if all(each.is_found for each in plans) else NO_PLAN
+    return max(EXIT_CODES[each.status] for each in plans)
 
 
 @cli.command()
@@ -91,8 +92,8 @@ def synthesize(
 def plan(scenario_file: Path, out: Path, law_file: Path | None, seed: int, threads: int) -> int:
     """Stage 2: plan for a scenario.
 
-    Exit code 0 with a plan, 3 if the goal is unreachable or no plan was found, 2 if the input is wrong; plan.json
-    says which and why.
+    Exit code 0 with a plan, 3 if the goal is proved to be unreachable, 4 if no plan was found, 2 if the input is wrong;
+    plan.json says why. Ctrl-C ends the search and keeps the best plan so far: exit code 130.
     """
     with status(LOADING):
         from applications.rosbot.scenario_file import read_scenario
@@ -103,7 +104,9 @@ def plan(scenario_file: Path, out: Path, law_file: Path | None, seed: int, threa
     law = load_steering_law(law_file) if law_file else default_law()
     made = read_plan(run_plan(begin(out, seed), scenario_file, law, seed=seed, threads=threads))
     print_plans([(name, made)])
-    return 0 if made.is_found else NO_PLAN
+    if made.ended == "interrupted":
+        raise KeyboardInterrupt
+    return EXIT_CODES[made.status]
 
 
 @cli.command()

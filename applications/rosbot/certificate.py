@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, advance, arcs
 from applications.rosbot.chords import Chords, chords_of, gaps_of_circles, gaps_of_room
+from applications.rosbot.lags import ERROR, nominal_path
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
@@ -57,17 +58,26 @@ def certify(
     controls = np.asarray(controls, dtype=np.float64).reshape(-1, 2)
     durations = np.broadcast_to(np.asarray(period, dtype=np.float64), len(controls))
     begins = np.cumsum(durations) - durations
-    path = arcs(scenario.start, controls, np.clip(until - begins, 0.0, durations))
+    kept = np.clip(until - begins, 0.0, durations)
+    lags = scenario.model == "dynamic_unicycle"
+    path = _lagging(scenario, controls, kept) if lags else arcs(scenario.start, controls, kept)
     moves = np.any(scenario.circles[:, 2:4] != 0.0, axis=1)
     chords = chords_of(path, scenario.body)
     found = [_in_room(chords, scenario)]
-    if scenario.is_round:
+    if scenario.is_round and not lags:
         found += [_at_rest(path, scenario, np.flatnonzero(~moves))]
         found += [_moving(path, scenario, np.flatnonzero(moves))]
     else:
         found += [_turning(chords, scenario.circles)]
     nearest = min(found, key=lambda each: each.gap)
     return Certificate(nearest.gap, _room(path, scenario.bounds), nearest.obstacle, nearest.time)
+
+
+def _lagging(scenario: Scenario, controls: Floats, durations: Floats) -> Arcs:
+    """The path of the nominal robot with lags, in pieces so short that ERROR covers what makes them no arcs."""
+    path = nominal_path(scenario.start, controls, durations)
+    v, omega = (np.maximum(np.abs(each[:-1]), np.abs(each[1:])) for each in (path.v, path.omega))
+    return Arcs(path.times, path.poses, v, omega, np.diff(path.times), ERROR, ERROR)
 
 
 def _in_room(chords: Chords, scenario: Scenario) -> _Nearest:

@@ -7,9 +7,10 @@ import numpy as np
 
 from applications.rosbot.seeds import nearby
 from applications.rosbot.swarms import Found
+from applications.rosbot.vehicles import pose_plans
 from gpsynth.arrays import Floats
 from gpsynth.law import Law
-from gpsynth.planning import Plan, PlanSettings, plans
+from gpsynth.planning import Plan, PlanSettings
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule, Schedules
 from gpsynth.seeds import stream
@@ -27,13 +28,13 @@ def follow(
     The problem is the one that is left: it starts where the robot now is, among obstacles where they now are.
     """
     count = len(previous.schedule.dwell)
-    order = np.argsort(previous.particles.costs, kind="stable")[: settings.particles // 2]
+    order = np.argsort(previous.particles.costs, kind="stable")[: settings.particles // 4]
     known = [previous.schedule, *(previous.particles.schedules[int(number)] for number in order)]
     left = [each.after(elapsed).split(count) for each in known]
     others = nearby(left[0], settings.particles, NEARNESS, stream(seed, FOLLOW, 0))
     initial = Schedules.joined([Schedules.of(left), others.take(np.arange(len(left), settings.particles))])
     remaining = max(previous.arrival_time - elapsed, problem.period)
-    for plan in plans(
+    for plan in pose_plans(
         problem,
         law,
         replace(settings, points=count),

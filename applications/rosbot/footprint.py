@@ -13,11 +13,12 @@ def rectangle_circles(length: float, width: float, center: tuple[float, float] =
     Each covers one of equal parts, a rectangle whose corners it goes through. length (m) is along the robot's axis,
     width across; `center` is in the robot's frame.
     """
+    square = min(4.0 * EXCESS, length, width)  # whose circle sticks out by less than EXCESS
     columns, rows = min(
         (
             (columns, rows)
-            for columns in range(1, 1 + _enough(length))
-            for rows in range(1, 1 + _enough(width))
+            for columns in range(1, 1 + int(np.ceil(length / square)))
+            for rows in range(1, 1 + int(np.ceil(width / square)))
             if _excess(length / columns, width / rows) <= EXCESS
         ),
         key=lambda counts: (counts[0] * counts[1], counts),
@@ -27,11 +28,6 @@ def rectangle_circles(length: float, width: float, center: tuple[float, float] =
     across = (np.arange(rows) + 0.5) * part[1] - 0.5 * width + center[1]
     x, y = (axis.ravel() for axis in np.meshgrid(along, across))
     return np.column_stack([x, y, np.full(len(x), 0.5 * np.hypot(*part))])
-
-
-def _enough(side: float) -> int:
-    """Into how many pieces a side is cut at most: squares of 4 EXCESS stick out by less than EXCESS."""
-    return int(np.ceil(side / (4.0 * EXCESS)))
 
 
 def _excess(length: float, width: float) -> float:

@@ -109,8 +109,10 @@ def _settings(fields: dict[str, str]) -> MapSettings:
 def _image(text: str) -> str:
     quoted = len(text) > 1 and text[0] == text[-1] and text[0] in "\"'"
     name = text[1:-1] if quoted else text
-    if not name or "\0" in name:
-        raise ScenarioError(f"image is {text[:60]}; expected the name of a file")
+    if not name or "\0" in name or ".." in Path(name).parts:
+        raise ScenarioError(
+            f"image is {text[:60]}; expected the name of a file in the map's folder, or a whole path"
+        )
     return name
 
 

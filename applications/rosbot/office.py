@@ -2,9 +2,10 @@
 
     python -m applications.rosbot.office FOLDER
 
-writes office.pgm and office.yaml, as they stand in `applications/rosbot/scenarios`.
+writes office.png and office.yaml, as they stand in `applications/rosbot/scenarios`.
 """
 
+import io
 import sys
 from itertools import pairwise
 from pathlib import Path
@@ -89,13 +90,15 @@ def _fill(shades: Shades, rectangle: tuple[float, float, float, float], shade: i
 
 
 def write_office(folder: Path, seed: int = SEED) -> None:
-    """The map as office.pgm and office.yaml; raises FileError if they cannot be written."""
-    shades = office(seed)
-    header = f"P5\n{shades.shape[1]} {shades.shape[0]}\n255\n".encode()
-    write_bytes(folder / "office.pgm", header + shades.tobytes())
+    """The map as office.png and office.yaml; raises FileError if they cannot be written."""
+    from PIL import Image
+
+    content = io.BytesIO()
+    Image.fromarray(office(seed)).save(content, "PNG", optimize=True)
+    write_bytes(folder / "office.png", content.getvalue())
     write_text(
         folder / "office.yaml",
-        f"image: office.pgm\nmode: trinary\nresolution: {RESOLUTION}\norigin: [0.0, 0.0, 0.0]\n"
+        f"image: office.png\nmode: trinary\nresolution: {RESOLUTION}\norigin: [0.0, 0.0, 0.0]\n"
         "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n",
     )
 

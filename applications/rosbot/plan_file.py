@@ -29,6 +29,7 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
         "format": FORMAT,
         "status": report.status,
         "reason": report.reason,
+        "ended": report.ended,
         "arrival_time": None,
         "clearance": None,
         "certificate": None,
@@ -49,7 +50,7 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
             "clearance": _finite(check.clearance),
             "certificate": _proved(report.certificate) if report.certificate else None,
             "law": {"hash": report.law.hash, "formulas": list(report.law.formulas())},
-            "controls": report.plan.trajectory.u.tolist(),
+            "controls": report.controls.tolist(),
             "trajectory": _once_a_period(check.trajectory).tolist(),
             "schedule": {"points": schedule.points.tolist(), "dwell": schedule.dwell.tolist()},
         }

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from applications.rosbot.gaps import gaps_to_circles, gaps_to_room
+from applications.rosbot.lags import nominal_path
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ScenarioError
@@ -38,7 +39,7 @@ def replay(scenario: Scenario, controls: Floats, period: float | Floats) -> Repl
     controls = np.asarray(controls, dtype=np.float64)
     durations = np.broadcast_to(np.asarray(period, dtype=np.float64), (len(controls),))
     _check(controls, durations)
-    trajectory = drive(scenario.start, controls, durations)
+    trajectory = _driven(scenario, controls, durations)
     errors = trajectory[:, 1:] - scenario.goal
     distance = np.hypot(errors[:, 0], errors[:, 1])
     turn = np.abs(np.remainder(errors[:, 2] + np.pi, 2.0 * np.pi) - np.pi)
@@ -54,6 +55,13 @@ def replay(scenario: Scenario, controls: Floats, period: float | Floats) -> Repl
         in_time=arrival_time <= scenario.time_limit,
         trajectory=frozen(trajectory),
     )
+
+
+def _driven(scenario: Scenario, controls: Floats, durations: Floats) -> Floats:
+    if scenario.model != "dynamic_unicycle":
+        return drive(scenario.start, controls, durations)
+    path = nominal_path(scenario.start, controls, durations)
+    return np.column_stack([path.times, path.poses])
 
 
 def drive(start: Floats, controls: Floats, durations: Floats) -> Floats:
@@ -91,6 +99,10 @@ def clearance(scenario: Scenario, trajectory: Floats) -> float:
 
 def _in_limits(scenario: Scenario, controls: Floats) -> bool:
     low, high = np.array([scenario.speed_limits, scenario.turn_limits]).T
+    if scenario.model == "car":
+        sharpest = np.abs(controls[:, 0]) / scenario.turning_radius
+        if np.any(np.abs(controls[:, 1]) > sharpest + SLACK):
+            return False
     return bool(np.all((controls >= low - SLACK) & (controls <= high + SLACK)))
 
 

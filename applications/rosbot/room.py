@@ -36,12 +36,7 @@ class Room:
             raise ScenarioError(
                 "the room is empty: its map has no occupied cell, and there is nothing else in it"
             )
-        size = np.ptp(self.box, axis=0) / self.width
-        if np.prod(size + 1.0) > MOST_NODES:
-            raise ScenarioError(
-                f"the map, polygons and segments reach over {size[0] * self.width:g} m x {size[1] * self.width:g} m; "
-                f"expected at most {MOST_NODES} cells of {self.width:g} m"
-            )
+        _check_size(self.box, self.width)
 
     @cached_property
     def edges(self) -> Floats:
@@ -80,9 +75,14 @@ class Room:
         least: Floats = np.minimum(gaps, np.where(self._covers(points), 0.0, beside))
         return least
 
-    def field(self, spacing: float) -> DistanceField:
-        """The distance field, its nodes at most `spacing` (m) apart, or as far as MOST_NODES allow."""
-        low, high = self.box + np.array([[-AROUND], [AROUND]])
+    def field(self, spacing: float, places: Floats | None = None) -> DistanceField:
+        """The distance field, its nodes at most `spacing` (m) apart, or as far as MOST_NODES allow.
+
+        It reaches AROUND (m) beyond all there is and beyond the places (n, 2).
+        """
+        points = self.box if places is None else np.vstack([self.box, places])
+        low, high = points.min(axis=0) - AROUND, points.max(axis=0) + AROUND
+        _check_size(np.stack([low, high]), self.width)
         least = float(np.sqrt(np.prod(high - low + self.width) / MOST_NODES))
         parts = max(1, int(np.ceil(self.width / max(spacing, least) - 1e-9)))
         corner = np.asarray(self.corner) if self.cells.size else low
@@ -118,6 +118,15 @@ class Room:
         along = [upright + shares * [0.0, 1.0], level + shares * [1.0, 0.0]]
         samples = np.unique(np.concatenate([part.reshape(-1, 2) for part in along]), axis=0)
         return cKDTree(np.asarray(self.corner) + self.width * samples)
+
+
+def _check_size(box: Floats, width: float) -> None:
+    size = np.ptp(box, axis=0)
+    if np.prod(size / width + 1.0) > MOST_NODES:
+        raise ScenarioError(
+            f"the map, polygons and segments, with start, goal and circles, reach over {size[0]:g} m x {size[1]:g} m; "
+            f"expected at most {MOST_NODES} cells of {width:g} m"
+        )
 
 
 def _distances(points: Floats, edge: Floats) -> Floats:

@@ -8,9 +8,11 @@ import numpy.typing as npt
 from scipy.sparse.csgraph import dijkstra
 
 from applications.rosbot.discs import clear_of, grown, outermost
+from applications.rosbot.lattice import ways
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.tangents import TangentGraph, tangent_graph
 from gpsynth.arrays import Floats, frozen
+from gpsynth.distance_field import DistanceField
 
 SPACING = np.deg2rad(7.5)  # between the vertices on an arc
 FEW = 50  # discs that are all looked at
@@ -38,11 +40,22 @@ def routes(scenario: Scenario, *, count: int = 5, margin: float = 0.0) -> list[R
     """Up to `count` routes of distinct homotopy class for the robot's center, the shortest first.
 
     They keep `margin` (m) besides the robot's radius where start and goal allow it. Obstacles count where they are at
-    time 0. Classes that are longer than 1.8 times the shortest plus 1 m are left out.
+    time 0. Classes that are longer than 1.8 times the shortest plus 1 m are left out. In a room the routes are those of
+    a lattice (`lattice.py`).
     """
+    if scenario.field is not None:
+        return _in_room(scenario, scenario.field, count, scenario.radius + margin)
     start, goal = scenario.start[:2], scenario.goal[:2]
     discs = clear_of(clear_of(grown(scenario.discs, margin), start), goal)
     return shortest_routes(start, goal, discs, scenario.bounds, count=count)
+
+
+def _in_room(scenario: Scenario, field: DistanceField, count: int, clearance: float) -> list[Route]:
+    for x, y, radius in scenario.discs:
+        gaps = np.hypot(*(field.nodes - [x, y]).transpose(2, 0, 1)) - radius + scenario.radius
+        field = field.joined(gaps * np.abs(gaps))
+    found = ways(scenario.start[:2], scenario.goal[:2], field, clearance, count=count)
+    return [Route(way, float(np.hypot(*np.diff(way, axis=0).T).sum())) for way in found]
 
 
 def shortest_routes(start: Floats, goal: Floats, discs: Floats, bounds: Floats, *, count: int) -> list[Route]:

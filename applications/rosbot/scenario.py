@@ -14,6 +14,7 @@ from gpsynth.errors import ScenarioError
 
 MOST = 1e4  # m, s: what is larger is a slip of the pen, and no plan for it ends
 FASTEST = 100.0  # m/s, rad/s
+MODELS = ("unicycle", "dynamic_unicycle", "car")
 FINE, COARSE = (
     0.01,
     0.05,
@@ -42,6 +43,8 @@ class Scenario:
         default_factory=lambda: np.zeros((0, 3))
     )  # (f, 3) x m, y m, radius m in the robot's frame; without any it is a disc
     room: Room | None = None  # obstacles at rest that are no circles
+    model: str = "unicycle"  # or another of MODELS
+    turning_radius: float = 0.0  # m, the least of a car; 0 of others
     position_tolerance: float = 0.05  # m
     heading_tolerance: float = 0.1  # rad
     time_limit: float = 60.0  # s
@@ -65,6 +68,7 @@ class Scenario:
             _check_body(self.body)
             object.__setattr__(self, "radius", inner_radius(self.body))
         _check_numbers(self)
+        _check_model(self)
         _check_obstacles(self)
         if not len(self.body):
             object.__setattr__(self, "body", frozen(np.array([[0.0, 0.0, self.radius]])))
@@ -87,10 +91,13 @@ class Scenario:
 
     @cached_property
     def field(self) -> DistanceField | None:
-        """The distance field of the room."""
+        """The distance field of the room; start, goal and circles lie within its grid."""
         if self.room is None:
             return None
-        return self.room.field(float(np.clip(0.2 * self.body[:, 2].min(), FINE, COARSE)))
+        x, y, radius = self.discs.T
+        places = [self.start[:2], self.goal[:2], *np.column_stack([x - radius, y - radius])]
+        places += list(np.column_stack([x + radius, y + radius]))
+        return self.room.field(float(np.clip(0.2 * self.body[:, 2].min(), FINE, COARSE)), np.array(places))
 
 
 def _shaped(name: str, value: object, shape: tuple[int, ...]) -> Floats:
@@ -121,6 +128,19 @@ def _check_numbers(scenario: Scenario) -> None:
     for name, (low, high) in pairs.items():
         if not low < high:
             raise ScenarioError(f"{name} are [{low:g}, {high:g}]; the first must be less than the second")
+
+
+def _check_model(scenario: Scenario) -> None:
+    if scenario.model not in MODELS:
+        raise ScenarioError(f"the model is {scenario.model!r}; expected {', '.join(MODELS)}")
+    if scenario.model == "car" and not 0.0 < scenario.turning_radius <= MOST:
+        raise ScenarioError(
+            f"the car's turning radius is {scenario.turning_radius:g} m; expected more than 0"
+        )
+    if scenario.model != "car" and scenario.turning_radius != 0.0:
+        raise ScenarioError(
+            f"a {scenario.model} has the turning radius {scenario.turning_radius:g} m; expected none"
+        )
 
 
 def _check_body(body: Floats) -> None:

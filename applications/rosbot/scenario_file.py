@@ -11,7 +11,7 @@ from typing import Literal
 import msgspec
 import numpy as np
 
-from applications.rosbot.scenario import Scenario
+from applications.rosbot.scenario import MODELS, Scenario
 from applications.rosbot.scenario_parts import (
     Circle,
     Footprint,
@@ -30,7 +30,7 @@ NAME = re.compile("[A-Za-z_]{1,60}")  # what fields are called: nothing that a c
 CHOICES = MappingProxyType(
     {
         "format": FORMAT,
-        "model": "unicycle",
+        "model": ", ".join(MODELS),
         "type": "circle, segment, polygon",
         "robot.footprint.type": "circle, circles, rectangle",
         "map.unknown": "occupied, free",
@@ -46,6 +46,7 @@ class _Limits(Strict):
 
 class _Robot(Strict):
     footprint: Footprint
+    turning_radius: float = 0.0
     name: str = "rosbot"
 
 
@@ -74,7 +75,7 @@ class _Document(Strict):
     name: str = ""
     family: str = ""
     note: str = ""
-    model: Literal["unicycle"] = "unicycle"
+    model: Literal["unicycle", "dynamic_unicycle", "car"] = "unicycle"
     expect_feasible: bool | None = None
 
 
@@ -107,6 +108,8 @@ def _scenario(document: _Document, name: str, folder: Path) -> Scenario:
         circles=np.array([(c.x, c.y, c.vx, c.vy, c.r) for c in circles]).reshape(-1, 5),
         **body_of(document.robot.footprint),
         room=room_of(document.obstacles, document.map, folder),
+        model=document.model,
+        turning_radius=document.robot.turning_radius,
         position_tolerance=document.goal_tolerance.position,
         heading_tolerance=document.goal_tolerance.heading,
         time_limit=document.time_limit,

@@ -92,6 +92,10 @@ def room_of(obstacles: list[Obstacle], given: MapPart | None, folder: Path) -> R
     walls = np.array(segments).reshape(-1, 4)
     if given is None:
         return Room(polygons=tuple(polygons), segments=walls) if polygons or segments else None
+    if not given.file or ".." in Path(given.file).parts or "\0" in given.file:
+        raise ScenarioError(
+            f'map.file is "{given.file[:60]}"; expected the name of a file in the scenario\'s folder, or a whole path'
+        )
     found = read_map(folder / given.file)
     cells = found.occupied(unknown_is_free=given.unknown == "free")
     beyond = 0 if given.unknown == "free" else 1  # what lies around the map is unknown as well

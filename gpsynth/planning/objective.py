@@ -62,7 +62,7 @@ class Objective:
         """Costs (N,) of eq. 17; infinity where a rollout diverged."""
         settings = self.settings
         arrived = np.isfinite(rollouts.arrival[:, 0])
-        used = np.where(arrived, self.arrivals(rollouts), rollouts.end[:, 0])
+        used = self.spent(rollouts)
         error = self.errors(rollouts.final[:, 0])
         if settings.obstacles == "path":
             error = np.where(arrived, 0.0, error)  # within the tolerance only time counts
@@ -73,6 +73,16 @@ class Objective:
             + settings.gamma * self.obstacle_term(rollouts, points)
         )  # eq. 17
         return np.where(rollouts.diverged[:, 0] > 0.0, np.inf, cost)
+
+    def spent(self, rollouts: Rollouts) -> Floats:
+        """T_used (N,) in s: the arrival time or the end of the rollout, with what the weights add."""
+        arrival, end = rollouts.arrival[:, 0], rollouts.end[:, 0]
+        arrived = np.isfinite(arrival)
+        used = np.where(arrived, self.arrivals(rollouts), end)
+        if self.settings.weights.is_time_alone:
+            return used
+        last = np.where(arrived, arrival, end)
+        return rollouts.cost[:, 0] * np.where(last > 0.0, used / np.where(last > 0.0, last, 1.0), 1.0)
 
     def errors(self, states: Floats) -> Floats:
         """Distances (N,) of states (N, n) from the goal, angles wrapped, in the units of the states."""
@@ -121,7 +131,7 @@ class Objective:
         settings, problem, world = self.settings, self.evaluator.problem, self.evaluator.world
         on_path = settings.obstacles == "path"
         gamma = settings.gamma if on_path else 0.0
-        slack = float(np.hypot(*problem.tolerance[world.position])) if len(world.position) else 0.0
+        slack = float(np.hypot(*problem.tolerance[world.position[:2]])) if len(world.position) else 0.0
         return Toll(
             limits=readonly(limits * (1.0 + ROUNDING)),
             due=self.budget,

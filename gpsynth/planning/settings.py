@@ -5,8 +5,9 @@ from math import inf
 from typing import Literal, get_args
 
 from gpsynth.arrays import shaped
-from gpsynth.checks import check_number, check_whole
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
+from gpsynth.planning.weights import Weights
 
 Clear = Literal["path", "points"]
 Method = Literal["clerc", "seed", "shade", "cmaes"]
@@ -31,6 +32,7 @@ class PlanSettings:
     spread: float = 0.05  # first step of CMA-ES, as a fraction of the range
     patience: float = 1.5  # rollouts end after so many T+, and a second
     top_speed: float = inf  # m/s: known to be the greatest, it shows sooner which rollouts cannot win
+    weights: Weights = Weights()  # of what counts beside time
     reach: float = 0.0  # distance from its point at which the next one is due at once; 0: dwell times alone
 
     def __post_init__(self) -> None:
@@ -41,6 +43,7 @@ class PlanSettings:
             check_number(f"{name} of a plan", value)
             if not 0.0 <= value < inf:
                 raise ProblemError(f"{name} of a plan must be finite and at least 0, not {value}")
+        check_kind("weights of a plan", self.weights, Weights)
         check_number("top_speed of a plan", self.top_speed)
         if not self.top_speed > 0.0:
             raise ProblemError(f"top_speed of a plan must be greater than 0, not {self.top_speed}")

@@ -39,6 +39,17 @@ def test_history_falls_strictly_and_ends_at_the_best():
     assert costs[-1] == result.cost
 
 
+def test_costs_above_their_limits_do_not_matter():
+    def cut(x, limits):
+        costs = SPHERE.cost(x)
+        return np.where(costs > limits, 1.5 * costs + 1.0, costs)
+
+    whole = minimize(SPHERE.cost, SWARM, seed=1, budget=3_000)
+    same = minimize(cut, SWARM, seed=1, budget=3_000, limits=SWARM.limits)
+    assert same_state(whole.state, same.state)
+    assert whole.history == same.history
+
+
 def test_callback_sees_each_generation_after_its_checkpoint_and_can_stop():
     events = []
 

@@ -148,3 +148,25 @@ def test_an_equal_cost_does_not_move_a_personal_best():
     state = swarm.tell(state, x, np.ones(6))
     y, state = swarm.ask(state, stream(1, 2))
     assert np.array_equal(swarm.tell(state, y, np.ones(6)).best_x, x)
+
+
+def test_swarms_side_by_side_follow_their_own_leaders():
+    swarms = PSO(SPHERE.lower, SPHERE.upper, size=12, swarms=3)
+    state = swarms.init(stream(1))
+    state = swarms.tell(state, state.x, SPHERE.cost(state.x))
+    moved, _ = swarms.ask(state, stream(2))
+    r1, r2 = stream(2).random((2, *state.x.shape))
+    for number in range(3):
+        part = slice(4 * number, 4 * number + 4)
+        leader = state.best_x[part][np.argmin(state.best_costs[part])]
+        v = 0.7298 * state.v[part] + 1.49618 * (
+            r1[part] * (state.best_x[part] - state.x[part]) + r2[part] * (leader - state.x[part])
+        )
+        limit = 0.2 * (SPHERE.upper - SPHERE.lower)
+        stepped = state.x[part] + np.clip(v, -limit, limit)
+        assert moved[part] == pytest.approx(np.clip(stepped, SPHERE.lower, SPHERE.upper), abs=1e-15)
+
+
+def test_particles_must_share_out_evenly():
+    with pytest.raises(OptimizerError, match="size must be a multiple of the number of swarms, 3, got 32"):
+        PSO(SPHERE.lower, SPHERE.upper, size=32, swarms=3)

@@ -106,6 +106,7 @@ def test_plain_text_images_comments_quotes_and_lists_are_read(folder):
         ({"origin": None}, "the field origin is missing"),
         ({"size": "3"}, "there is no field size in a map"),
         ({"image": '""'}, 'image is ""; expected the name of a file'),
+        ({"image": "../room.pgm"}, "image is ../room.pgm; expected the name of a file in the map's folder"),
         ({"negate": "0\nnegate: 1"}, "the field negate stands twice"),
         ({"negate": "0\n  nested"}, "is no field of a map"),
     ],

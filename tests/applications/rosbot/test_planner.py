@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from applications.rosbot import planner
+from applications.rosbot.bounds import lower_bound
 from applications.rosbot.guides import direct_guides, guides_along
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.plan_file import plan_document, write_plan
@@ -15,7 +16,7 @@ from applications.rosbot.polar_law import HOT, SATURATING, polar_law
 from applications.rosbot.replay import replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.seeds import along, nearby, schedules_along
+from applications.rosbot.seeds import along, nearby, repeated, schedules_along
 from gpsynth.errors import ScenarioError
 from gpsynth.planning import PlanSettings
 from gpsynth.seeds import stream
@@ -40,6 +41,11 @@ def scene(**changes) -> Scenario:
         **{"start": [0.0, 0.0, 0.0], "goal": [3.0, 0.0, 0.0], "circles": [[1.5, 0.05, 0.0, 0.0, 0.3]]}
         | changes
     )
+
+
+def hurried() -> Scenario:
+    """The scene with less time than the control period lets a plan have, though the bound does not forbid it."""
+    return scene(time_limit=lower_bound(scene()) + 0.01)
 
 
 @pytest.fixture(name="report", scope="module")
@@ -89,6 +95,67 @@ def test_what_shuts_the_way_of_a_previous_plan_is_driven_around(report):
     assert again.replay.solves
 
 
+def test_every_report_on_the_way_is_replayed_and_no_worse_than_the_one_before():
+    seen = []
+    last = plan_scenario(scene(), [law()], seed=1, effort=QUICK, callback=seen.append)
+    found = [each for each in seen if each.status == "planned"]
+    assert len(found) > 3
+    assert all(replay(scene(), each.plan.trajectory.u, PERIOD).solves for each in found)
+    times = [each.plan.arrival_time for each in found]
+    assert times == sorted(times, reverse=True)
+    assert last.plan.arrival_time == times[-1]
+    assert last.ended == "complete"
+
+
+def test_the_callback_ends_the_search_with_the_plan_it_was_shown(report):
+    first = plan_scenario(
+        scene(), [law()], seed=1, effort=QUICK, callback=lambda each: each.status == "planned"
+    )
+    assert (first.status, first.ended) == ("planned", "callback")
+    assert first.replay.solves
+    assert first.evaluations < report.evaluations / 3
+
+
+def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
+    few = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, rollouts=300))
+    assert (few.status, few.ended) == ("planned", "rollouts")
+    assert 300 <= few.evaluations < report.evaluations
+    now = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=0.0))
+    assert now.ended == "deadline"
+    assert now.evaluations < 300
+
+
+def test_an_interrupted_search_gives_the_best_plan_so_far():
+    def interrupt(report):
+        if report.status == wanted:
+            raise KeyboardInterrupt
+
+    wanted = "planned"
+    stopped = plan_scenario(scene(), [law()], seed=1, effort=QUICK, callback=interrupt)
+    assert (stopped.status, stopped.ended) == ("planned", "interrupted")
+    assert stopped.replay.solves
+    wanted = "not_found"
+    with pytest.raises(KeyboardInterrupt):
+        plan_scenario(hurried(), [law()], effort=QUICK, callback=interrupt)
+
+
+def test_without_a_plan_the_reason_says_what_has_ended_the_search():
+    for ended, words, options in (
+        ("complete", "rollouts; ", {"effort": replace(QUICK, attempts=1)}),
+        ("rollouts", "rollouts, all that were allowed; ", {"effort": replace(QUICK, rollouts=100)}),
+        ("deadline", "rollouts, when the deadline came; ", {"effort": replace(QUICK, deadline=0.0)}),
+        (
+            "callback",
+            "rollouts, when the search was ended; ",
+            {"effort": QUICK, "callback": lambda report: True},
+        ),
+    ):
+        report = plan_scenario(hurried(), [law()], **options)
+        assert (report.status, report.ended) == ("not_found", ended)
+        assert f"no collision-free plan within {hurried().time_limit:g} s was found in" in report.reason
+        assert f"{report.evaluations} {words}the goal may still be reachable" in report.reason
+
+
 def test_public_scenarios_are_solved_or_unreachable(public):
     report = plan_scenario(public, [law()], seed=0, effort=QUICK)
     assert report.status == ("planned" if public.expect_feasible else "unreachable")
@@ -130,10 +197,12 @@ def test_a_moving_obstacle_is_met_where_it_then_is():
 def test_an_unreachable_goal_is_told_from_one_that_was_not_found():
     ring = [[3.0 + 0.6 * np.cos(a), 0.6 * np.sin(a), 0.0, 0.0, 0.2] for a in np.linspace(0.0, 6.2, 12)]
     unreachable = plan_scenario(scene(circles=ring), [law()], effort=QUICK)
-    too_late = plan_scenario(scene(time_limit=3.0), [law()], effort=replace(QUICK, attempts=1))
+    too_late = plan_scenario(scene(time_limit=3.0), [law()], effort=QUICK)
+    not_found = plan_scenario(hurried(), [law()], effort=replace(QUICK, attempts=1))
     assert (unreachable.status, unreachable.evaluations) == ("unreachable", 0)
-    assert too_late.status == "not_found"
-    assert "no collision-free plan within 3 s" in too_late.reason
+    assert (too_late.status, too_late.evaluations) == ("unreachable", 0)
+    assert "too late: no plan arrives before 5.9 s, and the time limit is 3 s" in too_late.reason
+    assert (not_found.status, not_found.evaluations > 0) == ("not_found", True)
 
 
 def test_a_start_at_the_goal_has_arrived():
@@ -229,7 +298,7 @@ def test_a_schedule_along_a_guide_takes_its_time_and_points_at_its_cusps():
 
 def test_schedules_repeat_the_guides_with_noise():
     guides = direct_guides(scene())[:2]
-    schedules = schedules_along(guides, 4, 5, stream(1))
+    schedules = repeated(schedules_along(guides, 4), 5, stream(1))
     assert len(schedules) == 5
     assert np.array_equal(schedules[1].points, along(guides[1], 4).points)
     assert not np.array_equal(schedules[2].points, schedules[0].points)
