@@ -81,6 +81,10 @@ VARIANTS: Mapping[str, Variant] = MappingProxyType(
         WHOLE_NAME: Variant(),
         "T+ as at first": Variant(replace(WHOLE, iterations=GENERATIONS, rounds=1)),
         "T+ by Algorithm 1 taken literally": Variant(literal=True),
+        "equal dwell times": Variant(replace(WHOLE, dwell=None)),
+        "equal dwell times, T+ as at first": Variant(
+            replace(WHOLE, dwell=None, iterations=GENERATIONS, rounds=1)
+        ),
         "no first schedules along lines": Variant(guided=False),
         "obstacles counted at the points": Variant(replace(WHOLE, obstacles="points")),
         "swarm with omega 1.0, c1 = c2 = 0.65": Variant(replace(WHOLE, optimizer="seed")),

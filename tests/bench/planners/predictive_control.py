@@ -1,8 +1,8 @@
 """Nonlinear model predictive control with CasADi and IPOPT: 20 steps of 0.1 s, following a guide to the goal.
 
 The reference runs along the guide by the clock and waits a little for a robot that is behind; obstacles are soft
-constraints on the nearest discs, as hard ones fail as soon as a step ends inside of the margin. Pace, waiting and
-weights were tuned by hand on p01, p04, p06 and p10.
+constraints on the nearest discs, as hard ones fail as soon as a step ends inside of the margin. Pace and waiting
+were tuned by hand on the public scenarios.
 """
 
 from collections.abc import Iterator
