@@ -20,7 +20,7 @@ from applications.rosbot.planner import PERIOD, problem_of
 from applications.rosbot.polar_law import HOT, SATURATING, SETTLING, polar_law
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.seeds import schedules_along
+from applications.rosbot.seeds import repeated, schedules_along
 from applications.rosbot.stabilizer import default_law
 from gpsynth.arrays import Floats
 from gpsynth.evaluate import Evaluator
@@ -56,7 +56,8 @@ class Variant:
         problem, guides = problem_of(scenario, law), guides_of(scenario, count=5)
         budget = min(LOOSE * guides[0].duration, problem.horizon)
         count = self.settings.particles * 3 // 4 if self.guided else 0
-        initial = schedules_along(guides, self.settings.points, count, stream(seed, 0)) if count else ()
+        exact = schedules_along(guides, self.settings.points)
+        initial = repeated(exact, count, stream(seed, 0)) if count else ()
         if not self.literal:
             found = plan(problem, law, self.settings, seed=seed, initial=initial, budget=budget)
             return found.trajectory.u

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 Found = Sequence[tuple[float, float]]  # (s, T / T_ref) of every plan of a run
 COLORS = (BLUE, BLACK, ORANGE, GREEN, RED, SKY, GRAY, "#CC79A7", "#8C6D1F")
-SHORTEST, LONGEST = 0.01, 10.0  # s
+SHORTEST, LONGEST = 0.02, 20.0  # s
 
 
 def quality_figure(runs: Mapping[str, Sequence[Found]]) -> "Figure":
