@@ -156,9 +156,9 @@ def synthesize(
 ) -> SynthesisResult:
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
-    An evaluation is one parameter vector of one formula rolled out from all starts, or from a `sample` of them: search
-    and tuning then see so many at a time, the first, and later those of all that the best laws miss. The search may use
-    a `rough` problem (fewer starts, longer steps). Every law of the front is tuned on `problem` itself, or on the
+    An evaluation is one parameter vector of one formula rolled out from all starts, or from the first of them, a
+    `sample`: the last population is then scored on all, and the laws that are best there join the front. The search may
+    use a `rough` problem (fewer starts, longer steps). Every law of the front is tuned on `problem` itself, or on the
     problem `tuned`, with at most `tuning` evaluations, and as many again up to twice while it misses starts beyond its
     sample. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps, another
     plant), which no search has seen, so that a law that only fits its training loses.
@@ -192,12 +192,12 @@ def synthesize(
         "number of islands or their budget": shape,
         "sample": sample,
     }
-    cost = BatchCost(rough or problem, threads if islands is None else 1, wanted)
-    if islands is None:
-        run: Callable[..., Any] = minimize
-        cost = cost if sample is None else cost.of(range(sample))
-    else:
-        run = partial(search_islands, islands=islands, sample=sample, workers=threads)
+    whole = BatchCost(rough or problem, threads, wanted)
+    cost = whole if sample is None else whole.of(range(sample))
+    run: Callable[..., Any] = minimize
+    if islands is not None:
+        cost = replace(cost, threads=1)
+        run = partial(search_islands, islands=islands, workers=threads)
     found, reason = run_search(
         cost,
         strategy,
@@ -213,13 +213,16 @@ def synthesize(
     tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
     tuner = Tuner(tuned or problem, wanted, encoding.space, sample, seed, tuning)
+    laws = found.state.front
+    if sample is not None and isinstance(strategy, StructureSearch):
+        laws = _with_others(laws, strategy.rescored(found.state, whole).front)
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
         number, individual = numbered
         return _entry(evaluators, individual.program, tuner(individual, number), wanted)
 
     with ThreadPoolExecutor(threads) as pool:
-        entries = list(pool.map(entry, enumerate(found.state.front)))
+        entries = list(pool.map(entry, enumerate(laws)))
     return SynthesisResult(_front(entries), found.evaluations, found.history, reason)
 
 
@@ -283,6 +286,13 @@ def _check_sample(sample: int | None, problem: Problem) -> None:
         raise ProblemError(
             f"a sample of {sample} starts is more than the {len(problem.starts)} that a problem has"
         )
+
+
+def _with_others(
+    laws: tuple[Individual[Any], ...], others: Sequence[Individual[Any]]
+) -> tuple[Individual[Any], ...]:
+    known = {law.program for law in laws}
+    return (*laws, *(other for other in others if other.program not in known))
 
 
 def _entry(

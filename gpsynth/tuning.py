@@ -10,7 +10,6 @@ from gpsynth.arrays import Floats
 from gpsynth.batch_cost import BatchCost
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.evaluate import Evaluator
-from gpsynth.hard_starts import harder
 from gpsynth.objective import Objective
 from gpsynth.optimizers import CMAES
 from gpsynth.problem import Problem
@@ -19,14 +18,16 @@ from gpsynth.structure_search import Individual
 
 TUNING = 2  # stage of the random streams
 ROUNDS = 3  # on a sample, as long as starts are missed
+SHARE = 0.125  # of a sample, the most that is new in a round
 
 
 @dataclass(frozen=True, eq=False)
 class Tuner:
     """CMA-ES over the numbers of a law, within the space of its encoding.
 
-    With a `sample` it looks at so many starts of the problem at a time: the first, then those of all that the law
-    misses when it is tuned (`gpsynth/hard_starts.py`).
+    With a `sample` it looks at so many starts of the problem: the first, then, as long as the law misses others when it
+    is tuned, some of those in place of the last ones. A law that misses a small region has no start there in a small
+    sample (inductive synthesis guided by counterexamples, Solar-Lezama et al. 2006).
     """
 
     problem: Problem
@@ -42,13 +43,16 @@ class Tuner:
             return individual.values
         if self.sample is None:
             return self._better(individual, self._cost.evaluator, TUNING, number)
-        seen = tuple(range(self.sample))
+        seen = np.arange(self.sample)
         for turn in range(ROUNDS):
-            values = self._better(individual, self._cost.of(seen).evaluator, TUNING, number, turn)
+            path = (TUNING, number, turn) if turn else (TUNING, number)
+            values = self._better(individual, self._cost.of(seen.tolist()).evaluator, *path)
             individual = replace(individual, values=values)
-            before, seen = seen, harder(self._cost, [individual.candidate], seen)
-            if seen == before:
+            missed = np.setdiff1d(np.flatnonzero(self._cost.missed([individual.candidate])[0]), seen)
+            if not missed.size:
                 break
+            new = missed[: max(1, round(SHARE * len(seen)))]
+            seen = np.concatenate([new, seen[: len(seen) - len(new)]])
         return individual.values
 
     def _better(self, individual: Individual[Any], evaluator: Evaluator, *path: int) -> Floats:
