@@ -61,19 +61,30 @@ class Obstacles:
 
     def gaps(self, poses: Floats) -> Floats:
         """How far (N,) the robot at poses (N, 2) or (N, 3) is from the obstacles at time 0; see `DistanceField.at`."""
-        angles = poses[:, 2] if poses.shape[1] > 2 else np.zeros(len(poses))
-        sine, cosine = np.sin(angles), np.cos(angles)
-        least = np.full(len(poses), np.inf)
-        for ahead, left, radius in self.body:
-            places = poses[:, :2] + np.column_stack(
-                [ahead * cosine - left * sine, ahead * sine + left * cosine]
-            )
-            between = places[:, np.newaxis] - self.circles[:, :2]
-            gaps = np.hypot(between[..., 0], between[..., 1]) - self.circles[:, 4]
-            least = np.minimum(least, gaps.min(axis=1, initial=np.inf) - radius)
-            if self.field is not None:
-                least = np.minimum(least, self.field.at(places) - radius)
-        return least
+        gaps: Floats = self.gaps_to_circles(poses).min(axis=1, initial=np.inf)
+        return gaps if self.field is None else np.minimum(gaps, self.gaps_to_field(poses))
+
+    def gaps_to_circles(self, poses: Floats) -> Floats:
+        """The same (N, c) from each circle."""
+        between = self._centers(poses)[:, :, np.newaxis] - self.circles[:, :2]
+        distances = np.hypot(between[..., 0], between[..., 1]) - self.body[:, 2:]
+        gaps: Floats = distances.min(axis=1) - self.circles[:, 4]
+        return gaps
+
+    def gaps_to_field(self, poses: Floats) -> Floats:
+        """The same (N,) from what the field is of; infinity without one."""
+        if self.field is None:
+            return np.full(len(poses), np.inf)
+        gaps: Floats = np.min(self.field.at(self._centers(poses)) - self.body[:, 2], axis=1)
+        return gaps
+
+    def _centers(self, poses: Floats) -> Floats:
+        """The centers (N, f, 2) of the circles of the robot."""
+        angles = poses[:, 2:] if poses.shape[1] > 2 else np.zeros((len(poses), 1))
+        sine, cosine, (ahead, left, _) = np.sin(angles), np.cos(angles), self.body.T
+        turned = np.stack([ahead * cosine - left * sine, ahead * sine + left * cosine], axis=-1)
+        centers: Floats = poses[:, np.newaxis, :2] + turned
+        return centers
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -362,19 +373,18 @@ def _check_places(problem: Problem, obstacles: Obstacles) -> None:
 
 
 def _check_gaps(poses: Floats, obstacles: Obstacles) -> None:
-    for circle, (cx, cy, _, _, radius) in enumerate(obstacles.circles.tolist()):
-        alone = replace(obstacles, circles=obstacles.circles[[circle]], field=None)
-        inside = np.flatnonzero(alone.gaps(poses) < 0.0)
-        if len(inside):
-            x, y = poses[inside[0], :2].tolist()
-            robot = f"the robot's {obstacles.radius}" if obstacles.footprint is None else "its footprint"
-            raise ProblemError(
-                f"start {inside[0]} at ({x}, {y}) is inside obstacle {circle}, the circle of radius {radius} "
-                f"around ({cx}, {cy}) grown by {robot}"
-            )
+    inside = np.argwhere(obstacles.gaps_to_circles(poses) < 0.0)
+    if len(inside):
+        index, circle = inside[0].tolist()
+        (x, y), (cx, cy, _, _, radius) = poses[index, :2].tolist(), obstacles.circles[circle].tolist()
+        robot = f"the robot's {obstacles.radius}" if obstacles.footprint is None else "its footprint"
+        raise ProblemError(
+            f"start {index} at ({x}, {y}) is inside obstacle {circle}, the circle of radius {radius} "
+            f"around ({cx}, {cy}) grown by {robot}"
+        )
     if obstacles.field is not None:
         missing = 1.5 * obstacles.field.spacing  # of a distance, at most, between the nodes
-        inside = np.flatnonzero(obstacles.gaps(poses) < -missing)
-        if len(inside):
-            x, y = poses[inside[0], :2].tolist()
-            raise ProblemError(f"start {inside[0]} at ({x}, {y}) is inside what the distance field is of")
+        within = np.flatnonzero(obstacles.gaps_to_field(poses) < -missing)
+        if len(within):
+            x, y = poses[within[0], :2].tolist()
+            raise ProblemError(f"start {within[0]} at ({x}, {y}) is inside what the distance field is of")

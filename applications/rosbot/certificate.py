@@ -62,13 +62,14 @@ def certify(
     lags = scenario.model == "dynamic_unicycle"
     path = _lagging(scenario, controls, kept) if lags else arcs(scenario.start, controls, kept)
     moves = np.any(scenario.circles[:, 2:4] != 0.0, axis=1)
-    chords = chords_of(path, scenario.body)
-    found = [_in_room(chords, scenario)]
-    if scenario.is_round and not lags:
+    by_arcs, found = scenario.is_round and not lags, list[_Nearest]()
+    if by_arcs:
         found += [_at_rest(path, scenario, np.flatnonzero(~moves))]
         found += [_moving(path, scenario, np.flatnonzero(moves))]
-    else:
-        found += [_turning(chords, scenario.circles)]
+    if scenario.room is not None or not by_arcs:
+        chords = chords_of(path, scenario.body)
+        found.append(_in_room(chords, scenario))
+        found += [] if by_arcs else [_turning(chords, scenario.circles)]
     nearest = min(found, key=lambda each: each.gap)
     return Certificate(nearest.gap, _room(path, scenario.bounds), nearest.obstacle, nearest.time)
 

@@ -7,14 +7,21 @@ from applications.rosbot.room import Room
 from gpsynth.arrays import Floats
 
 
-def gaps_to_circles(body: Floats, circles: Floats, poses: Floats, times: Floats | float = 0.0) -> Floats:
-    """Distances (N, c) of the circles (f, 3) of a robot at poses (N, 3) from circles (c, 5) that may move."""
-    gaps = np.full((len(poses), len(circles)), np.inf)
-    for center, radius in zip(np.moveaxis(placed(body, poses), 1, 0), body[:, 2], strict=True):
-        for index, (x, y, vx, vy, size) in enumerate(circles):
-            square = (center[:, 0] - x - vx * times) ** 2 + (center[:, 1] - y - vy * times) ** 2
-            gaps[:, index] = np.minimum(gaps[:, index], np.sqrt(square) - size - radius)
+def gaps_at(body: Floats, circles: Floats, pose: Floats) -> Floats:
+    """Distances (c,) of the circles (f, 3) of a robot at a pose (3,) from circles (c, 5) at time 0."""
+    between = placed(body, pose[np.newaxis])[0, :, np.newaxis] - circles[:, :2]
+    gaps: Floats = np.min(np.hypot(between[..., 0], between[..., 1]) - body[:, 2:], axis=0) - circles[:, 4]
     return gaps
+
+
+def least_gap(body: Floats, circles: Floats, poses: Floats, times: Floats) -> float:
+    """The least distance of a robot at poses (N, 3), taken at times (N,), from circles (c, 5); infinity without any."""
+    gaps = (
+        np.sqrt(np.min((x - cx - vx * times) ** 2 + (y - cy - vy * times) ** 2)) - radius - size
+        for (x, y), size in zip(placed(body, poses).transpose(1, 2, 0), body[:, 2], strict=True)
+        for cx, cy, vx, vy, radius in circles
+    )
+    return float(min(gaps, default=np.inf))
 
 
 def gaps_to_room(body: Floats, room: Room, poses: Floats) -> Floats:

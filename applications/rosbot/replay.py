@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from applications.rosbot.gaps import gaps_to_circles, gaps_to_room
+from applications.rosbot.gaps import gaps_to_room, least_gap
 from applications.rosbot.lags import nominal_path
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats, frozen
@@ -91,7 +91,7 @@ def drive(start: Floats, controls: Floats, durations: Floats) -> Floats:
 def clearance(scenario: Scenario, trajectory: Floats) -> float:
     """The smallest gap (m) between the robot and the obstacles, moving ones where they then are; inf without any."""
     t, poses = trajectory[:, 0], trajectory[:, 1:]
-    gap = float(gaps_to_circles(scenario.body, scenario.circles, poses, t).min(initial=np.inf))
+    gap = least_gap(scenario.body, scenario.circles, poses, t)
     if scenario.room is not None:
         gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
     return gap

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from applications.rosbot.footprint import inner_radius
-from applications.rosbot.gaps import gaps_to_circles, gaps_to_room
+from applications.rosbot.gaps import gaps_at, gaps_to_room
 from applications.rosbot.room import Room
 from gpsynth.arrays import Floats, frozen
 from gpsynth.distance_field import DistanceField
@@ -171,7 +171,7 @@ def _check_places(scenario: Scenario) -> None:
                 f"{name} ({x:g}, {y:g}) lies outside the bounds, "
                 f"x in [{x_low:g}, {x_high:g}] and y in [{y_low:g}, {y_high:g}]"
             )
-    gaps = gaps_to_circles(scenario.body, scenario.circles, scenario.start[np.newaxis])[0]
+    gaps = gaps_at(scenario.body, scenario.circles, scenario.start)
     if np.any(gaps < 0.0):
         raise _overlap(scenario, f"obstacles[{int(np.argmin(gaps))}]", float(gaps.min()))
     if scenario.room is not None:

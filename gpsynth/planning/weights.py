@@ -107,7 +107,7 @@ def _nearness(problem: Problem, weights: Weights, given: Arguments) -> Any:
 
 
 def _gap(obstacles: Obstacles, circle: list[float], given: Arguments) -> Any:
-    x, y = (getattr(given[0], name) for name in obstacles.position)
+    x, y = (getattr(given[0], name) for name in obstacles.position[:2])
     cx, cy, vx, vy, radius = circle
     return np.hypot(x - (cx + vx * given[3]), y - (cy + vy * given[3])) - (radius + obstacles.radius)
 

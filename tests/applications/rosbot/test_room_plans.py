@@ -86,6 +86,19 @@ def test_the_office_is_the_one_that_is_drawn():
     assert found.cells.shape == (300, 400)
 
 
+def test_unknown_space_is_occupied_or_free_as_the_scenario_says(tmp_path):
+    rooms = {}
+    for unknown in ("occupied", "free"):
+        part = {"file": str(OFFICE.with_suffix(".yaml")), "unknown": unknown}
+        (tmp_path / "office.json").write_text(json.dumps(json.loads(OFFICE.read_text()) | {"map": part}))
+        rooms[unknown] = read_scenario(tmp_path / "office.json").room
+    places = np.array(
+        [[7.5, 12.0], [-0.02, 5.0], [7.5, 7.5], [0.1, 0.1]]
+    )  # unmapped, beyond the map, free, a wall
+    assert np.array_equal(rooms["occupied"].gaps(places) > 0.0, [False, False, True, False])
+    assert np.array_equal(rooms["free"].gaps(places) > 0.0, [True, True, True, False])
+
+
 @pytest.mark.slow
 def test_a_plan_through_the_office_comes_soon():
     scenario = read_scenario(OFFICE)
