@@ -129,6 +129,23 @@ def test_weights_that_make_no_sense_are_one_sentence(wrong, sentence):
         Weights(**wrong)
 
 
+def test_a_body_of_circles_keeps_all_of_them_clear():
+    problem, _ = robot()
+    parts = np.array([[0.2, 0.0, 0.1], [-0.1, 0.1, 0.15]])
+    body = Obstacles(circles=CIRCLES, position=("x", "y", "theta"), footprint=parts)
+    costs = weighted(replace(problem, obstacles=body), Weights(clearance=2.0, comfort=0.5)).running
+    for pose in np.random.default_rng(2).uniform(0.0, 2.0, (50, 3)):
+        turn = np.array([[np.cos(pose[2]), -np.sin(pose[2])], [np.sin(pose[2]), np.cos(pose[2])]])
+        gaps = [
+            np.hypot(*(pose[:2] + turn @ part[:2] - circle[:2] - 1.5 * circle[2:4])) - circle[4] - part[2]
+            for part in parts
+            for circle in CIRCLES
+        ]
+        inputs = np.hstack([pose, [0.1, 0.2], problem.goal, 1.5])
+        expected = 1.0 + 2.0 * max(0.0, 1.0 - min(gaps) / 0.5) ** 2
+        assert costs(inputs[np.newaxis])[0, 0] == pytest.approx(expected, rel=1e-12)
+
+
 def test_what_the_problem_does_not_have_cannot_be_weighed():
     problem, law = robot(obstacles=None)
     with pytest.raises(ProblemError, match="clearance is a weight for problems with circles"):

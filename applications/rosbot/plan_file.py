@@ -30,6 +30,7 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
         "status": report.status,
         "reason": report.reason,
         "ended": report.ended,
+        "via": [list(place) for place in report.via],
         "arrival_time": None,
         "clearance": None,
         "certificate": None,

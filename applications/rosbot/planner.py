@@ -63,6 +63,7 @@ class PlanReport:
     certificate: Certificate | None = None  # for the path between its samples
     history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
     ended: Ended = "complete"
+    via: tuple[tuple[float, ...], ...] = ()  # places that are passed on the way: x, y and tolerance in m
 
     @cached_property
     def lower_bound(self) -> float:

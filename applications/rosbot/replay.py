@@ -31,10 +31,13 @@ class Replay:
         return self.in_time and self.in_limits and self.in_bounds and self.clearance >= -SLACK
 
 
-def replay(scenario: Scenario, controls: Floats, period: float | Floats) -> Replay:
+def replay(
+    scenario: Scenario, controls: Floats, period: float | Floats, *, via: Floats = np.empty((0, 3))
+) -> Replay:
     """Drive (v, omega) pairs, (n, 2), for `period` seconds each (one number, or one per pair), in steps of 1 ms.
 
-    The robot starts at the scenario's start and stops at the end of the controls.
+    The robot starts at the scenario's start and stops at the end of the controls. It has arrived in the goal's
+    tolerance once it has been within the third number (m) of each place in `via` (m, 3), one after the other.
     """
     controls = np.asarray(controls, dtype=np.float64)
     durations = np.broadcast_to(np.asarray(period, dtype=np.float64), (len(controls),))
@@ -44,6 +47,7 @@ def replay(scenario: Scenario, controls: Floats, period: float | Floats) -> Repl
     distance = np.hypot(errors[:, 0], errors[:, 1])
     turn = np.abs(np.remainder(errors[:, 2] + np.pi, 2.0 * np.pi) - np.pi)
     within = (distance <= scenario.position_tolerance + SLACK) & (turn <= scenario.heading_tolerance + SLACK)
+    within[: _passed(trajectory, via)] = False
     arrived = bool(np.any(within))
     trajectory = trajectory[: int(np.argmax(within)) + 1] if arrived else trajectory
     arrival_time = float(trajectory[-1, 0]) if arrived else np.inf
@@ -95,6 +99,17 @@ def clearance(scenario: Scenario, trajectory: Floats) -> float:
     if scenario.room is not None:
         gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
     return gap
+
+
+def _passed(trajectory: Floats, via: Floats) -> int:
+    """The first sample at which all places have been passed in their order; the number of samples if none is."""
+    first = 0
+    for x, y, tolerance in via:
+        near = np.hypot(trajectory[first:, 1] - x, trajectory[first:, 2] - y) <= tolerance + SLACK
+        if not np.any(near):
+            return len(trajectory)
+        first += int(np.argmax(near))
+    return first
 
 
 def _in_limits(scenario: Scenario, controls: Floats) -> bool:

@@ -1,7 +1,7 @@
 """The two stages as a person runs them: progress shown and logged, results in a run folder."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from applications.rosbot.planner import Effort, PlanReport, plan_scenario
 from applications.rosbot.scenario_file import read_scenario
 from applications.rosbot.show import redraw, scenario_beside
 from applications.rosbot.stabilizer import SEARCH_BUDGET, stabilization, synthesize_stabilizer
+from applications.rosbot.through import plan_through
 from gpsynth.cli import EncodingName, load_law, recorder, status, write_result
 from gpsynth.errors import FileError, GpsynthError, LawError
 from gpsynth.files import write_bytes
@@ -73,6 +74,7 @@ def run_plan(
     seed: int,
     effort: Effort = Effort(),
     threads: int = 1,
+    via: Sequence[tuple[float, float, float]] = (),
 ) -> Path:
     """Stage 2 into a run folder: the plan, its picture and a copy of its scenario; the log holds each improvement.
 
@@ -81,7 +83,10 @@ def run_plan(
     """
     scenario, source = read_scenario(scenario_file), scenario_file.read_bytes()
     with status(f"planning {scenario.name}"):
-        report = plan_scenario(scenario, [law], seed=seed, effort=effort, threads=threads)
+        if via:
+            report = plan_through(scenario, np.array(via), law, seed=seed, effort=effort, threads=threads)
+        else:
+            report = plan_scenario(scenario, [law], seed=seed, effort=effort, threads=threads)
     path = run.folder / plan_file
     _keep(report, path)
     for what, work, older in (

@@ -31,8 +31,8 @@ class Effort:
     """How much is searched: swarms of a few rounds everywhere, more for the best, then refinement."""
 
     points: int = 6
-    swarms: int = 2  # at least, on every way, however few the laws
-    scouts: PlanSettings = PlanSettings(particles=32, iterations=12, rounds=3)
+    swarms: int = 3  # at least, on every way, however few the laws
+    scouts: PlanSettings = PlanSettings(particles=24, iterations=12, rounds=3)
     chasers: PlanSettings = PlanSettings(particles=48, iterations=15, rounds=6, patience=1.1)
     refiners: PlanSettings = PlanSettings(particles=32, iterations=30, rounds=5, patience=1.02)
     followers: PlanSettings = PlanSettings(particles=32, iterations=4, rounds=2)  # of a previous plan

@@ -58,8 +58,8 @@ def weighted(problem: Problem, weights: Weights) -> Problem:
         raise ProblemError(f"smoothness and heading weigh the angles of a plant; {plant.name} has none")
     if weights.clearance and (problem.obstacles is None or not len(problem.obstacles.circles)):
         raise ProblemError("clearance is a weight for problems with circles; this one has none")
-    if weights.clearance and problem.obstacles is not None and problem.obstacles.footprint is not None:
-        raise ProblemError("clearance is a weight for round robots; this one has a footprint of circles")
+    if weights.clearance and problem.obstacles is not None and problem.obstacles.field is not None:
+        raise ProblemError("clearance weighs circles alone; this problem has a distance field")
     terms = (
         (weights.energy, _energy),
         (weights.smoothness, _smoothness),
@@ -101,15 +101,25 @@ def _smoothness(problem: Problem, _: Weights, given: Arguments) -> Any:
 def _nearness(problem: Problem, weights: Weights, given: Arguments) -> Any:
     obstacles = problem.obstacles
     assert obstacles is not None
-    gaps = [_gap(obstacles, circle, given) for circle in obstacles.circles.tolist()]
+    centers = [(*_center(obstacles, part, given[0]), part[2]) for part in obstacles.body.tolist()]
+    gaps = [_gap(center, circle, given[3]) for center in centers for circle in obstacles.circles.tolist()]
     share = np.maximum(0.0, 1.0 - reduce(np.minimum, gaps) / weights.comfort)
     return np.square(share)
 
 
-def _gap(obstacles: Obstacles, circle: list[float], given: Arguments) -> Any:
-    x, y = (getattr(given[0], name) for name in obstacles.position[:2])
-    cx, cy, vx, vy, radius = circle
-    return np.hypot(x - (cx + vx * given[3]), y - (cy + vy * given[3])) - (radius + obstacles.radius)
+def _center(obstacles: Obstacles, part: list[float], x: Any) -> tuple[Any, Any]:
+    """Where a circle of the body is, at a pose."""
+    east, north, *heading = (getattr(x, name) for name in obstacles.position)
+    ahead, left, _ = part
+    if not heading:
+        return east, north
+    cosine, sine = np.cos(heading[0]), np.sin(heading[0])
+    return east + ahead * cosine - left * sine, north + ahead * sine + left * cosine
+
+
+def _gap(center: tuple[Any, Any, float], circle: list[float], t: Any) -> Any:
+    x, y, vx, vy, radius = circle
+    return np.hypot(center[0] - (x + vx * t), center[1] - (y + vy * t)) - (radius + center[2])
 
 
 def _away(problem: Problem, _: Weights, given: Arguments) -> Any:

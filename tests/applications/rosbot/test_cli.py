@@ -156,6 +156,12 @@ def test_the_same_seed_gives_the_same_controls(scenario_file, law_file, tmp_path
     assert plans[0]["schedule"] == plans[1]["schedule"]
 
 
+def test_a_deadline_ends_the_search_with_what_is_there(scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file, "--deadline", "0.001") in (0, 4)
+    assert json.loads((out / "plan.json").read_text())["ended"] == "deadline"
+
+
 @pytest.mark.slow
 def test_a_plan_needs_no_law_of_one_s_own(scenario_file, tmp_path):
     assert _run("plan", scenario_file(), "--out", tmp_path / "out") == 0
@@ -277,6 +283,28 @@ def test_ctrl_c_while_a_plan_is_written_comes_too_late(monkeypatch, scenario_fil
     monkeypatch.setattr(Path, "replace", interrupted)
     assert _run("plan", scenario_file(), "--out", tmp_path / "out", "--law", law_file) == 130
     _replays(json.loads((tmp_path / "out" / "plan.json").read_text()), SCENARIO)
+
+
+@pytest.mark.slow
+def test_places_are_passed_on_the_way(scenario_file, law_file, tmp_path):
+    out, places = tmp_path / "out", ("--via", "0.3", "0.8", "0.1", "--via", "-0.2", "0.2", "0.1")
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file, *places) == 0
+    plan = json.loads((out / "plan.json").read_text())
+    assert plan["via"] == [[0.3, 0.8, 0.1], [-0.2, 0.2, 0.1]]
+    path = np.array(plan["trajectory"])
+    # the trajectory has a pose a period, in which the robot moves 0.025 m at most
+    first = np.hypot(path[:, 1] - 0.3, path[:, 2] - 0.8) <= 0.1 + 0.0125
+    then = np.hypot(path[:, 1] + 0.2, path[:, 2] - 0.2) <= 0.1 + 0.0125
+    assert np.argmax(first) < len(path) - np.argmax(then[::-1])
+    assert np.any(first)
+    assert np.any(then)
+
+
+def test_a_place_out_of_bounds_is_one_sentence_and_leaves_nothing(capsys, scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    given = ("plan", scenario_file(), "--out", out, "--law", law_file, "--via", "9", "0", "0.1")
+    _fails(capsys, *given, sentence=["via-point 0 (9, 0) lies outside the bounds"])
+    assert not out.exists()
 
 
 def test_ctrl_c_before_a_plan_leaves_none(monkeypatch, scenario_file, law_file, tmp_path):
