@@ -15,6 +15,7 @@ from gpsynth.arrays import Floats, frozen
 from gpsynth.distance_field import DistanceField
 
 SPACING = np.deg2rad(7.5)  # between the vertices on an arc
+FEW = 50  # discs that are all looked at
 SAME = 1e-7  # m; lengths of routes that differ by less belong to one route
 
 
@@ -58,9 +59,31 @@ def _in_room(scenario: Scenario, field: DistanceField, count: int, clearance: fl
 
 
 def shortest_routes(start: Floats, goal: Floats, discs: Floats, bounds: Floats, *, count: int) -> list[Route]:
-    """The routes between two points (2,) outside of discs (c, 3), within bounds (4,)."""
-    if np.hypot(*(goal - start)) < SAME:
+    """The routes between two points (2,) outside of discs (c, 3), within bounds (4,).
+
+    No way of some length touches a disc by which there is no way as short. So of many discs only those are looked at
+    that the longest route may touch.
+    """
+    straight = float(np.hypot(*(goal - start)))
+    if straight < SAME:
         return [Route(frozen(np.array([start, goal])), 0.0)]
+    there, back = (np.hypot(*(discs[:, :2] - end).T) for end in (start, goal))
+    ways = there + back - 2.0 * discs[:, 2]
+    reach = _longest(1.25 * straight) if len(discs) > FEW else np.inf
+    while True:
+        near = ways <= reach
+        found = _taut_routes(start, goal, discs[near], bounds, count)
+        if not found or np.all(near) or _longest(found[0].length) <= reach:
+            return found
+        reach = _longest(found[0].length)
+
+
+def _longest(shortest: float) -> float:
+    """How long (m) a route may be."""
+    return 1.8 * shortest + 1.0
+
+
+def _taut_routes(start: Floats, goal: Floats, discs: Floats, bounds: Floats, count: int) -> list[Route]:
     tangents = tangent_graph(start, goal, outermost(discs), bounds)
     # The shortest way through a touching point is taut there as well, hence a class of its own.
     there, before = dijkstra(tangents.graph, indices=0, return_predecessors=True)
@@ -68,7 +91,7 @@ def shortest_routes(start: Floats, goal: Floats, discs: Floats, bounds: Floats, 
     lengths = there + back
     found: list[Route] = []
     for node in np.argsort(lengths, kind="stable"):
-        longest = 1.8 * found[0].length + 1.0 if found else np.inf
+        longest = _longest(found[0].length) if found else np.inf
         if len(found) == count or not lengths[node] <= longest or np.isinf(lengths[node]):
             break
         if any(_passes(route, tangents.points[node], float(lengths[node])) for route in found):

@@ -30,7 +30,6 @@ OPERATIONS = ("add", "sub", "mul", "min", "max", "abs", "square", "tanh", "sin",
 POSITION, HEADING = 0.05, 0.1  # m, rad: tolerance of arrival
 SEARCH_BUDGET = 80_000  # parameter vectors
 ISLANDS, ENOUGH = Islands(8), 40_000  # islands, and the budget from which each has enough
-TRAINING, SAMPLE = 1_024, 64  # starts of search and tuning, and how many they see at a time
 # The first sign: left and right change places. The second: the robot turns round, so that forward is backward. A law
 # without these symmetries can be good on its training; it reaches the goal by turning the same way all the time.
 SYMMETRIES = MappingProxyType(
@@ -120,10 +119,9 @@ def synthesize_stabilizer(
 ) -> SynthesisResult:
     """Find the stabilizer from scratch: a law that reaches every target and holds it.
 
-    Searched on the kinematics at 0.1 s from 64 starts, of which the best laws are chosen by 1024; tuned on the dynamics
-    at 0.05 s, each start under a draw of its own, from 64 of 1024 starts, in the end those that a law missed. Scored on
-    2048 more on the dynamics, and on the kinematics at 0.05 s and 0.005 s. Checkpoints in `folder` and `resume` are
-    those of `synthesize`.
+    Searched on the kinematics from 64 starts at 0.1 s; tuned on the dynamics from 64 others, each under a draw of its
+    own, at 0.05 s; scored on 2048 more on the dynamics, and on the kinematics at 0.05 s and 0.005 s. Checkpoints in
+    `folder` and `resume` are those of `synthesize`.
     """
     unseen = training_poses(stream(seed, _UNSEEN), 2_048)
     problem = stabilization(unseen, stop=False)
@@ -136,11 +134,12 @@ def synthesize_stabilizer(
         seed=seed,
         budget=budget,
         tuning=300,
-        rough=_rough(seed),
+        rough=stabilization(
+            training_poses(stream(seed, _ROUGH), 64), period=0.1, horizon=20.0, method="heun", stop=False
+        ),
         tuned=_tuning(seed),
         trials=trials,
         islands=ISLANDS if budget >= ENOUGH else None,
-        sample=SAMPLE,
         folder=folder,
         resume=resume,
         threads=threads,
@@ -149,21 +148,9 @@ def synthesize_stabilizer(
     )
 
 
-def _training(seed: int, what: int) -> Floats:
-    """The sample, which the search sees, and the others."""
-    parts = (stream(seed, what), SAMPLE), (stream(seed, what, 1), TRAINING - SAMPLE)
-    return np.concatenate([training_poses(*part) for part in parts])
-
-
-def _rough(seed: int) -> Problem:
-    """Kinematics in long steps."""
-    starts = _training(seed, _ROUGH)
-    return stabilization(starts, period=0.1, horizon=20.0, method="heun", stop=False)
-
-
 def _tuning(seed: int) -> Problem:
     """Dynamics in long steps: lags below LAG would need shorter ones, and to a law they are all the same."""
-    plant, starts = dynamic_unicycle(), _training(seed, _TUNING)
+    plant, starts = dynamic_unicycle(), training_poses(stream(seed, _TUNING), 64)
     draws = random_draws(plant, stream(seed, _TUNING, _DRAWS), len(starts), delay=DELAY)
     lags = [name.startswith("tau") for name in plant.parameter_names]
     slower = Draws(np.where(lags, np.maximum(draws.parameters, LAG), draws.parameters), delay=draws.delay)

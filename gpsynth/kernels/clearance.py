@@ -110,6 +110,33 @@ def pass_circles(
 
 
 @part
+def pass_near_circles(w: Floats, lanes: int, out: int, world: World, body: float) -> None:
+    """The same for circles at rest, of which a lane looks at those of its bucket; at all if that does not hold."""
+    cells, circles = world.buckets, world.circles
+    left, low, side = cells.lattice[0], cells.lattice[1], cells.lattice[2]
+    columns, rows, reach = cells.lattice[3], cells.lattice[4], cells.lattice[5]
+    for lane in range(lanes):
+        x, y, qx, qy = w[out + X, lane], w[out + Y, lane], w[out + DX, lane], w[out + DY, lane]
+        u, v, square = (x - left) / side, (y - low) / side, qx * qx + qy * qy
+        holds = 0.0 <= u < columns and 0.0 <= v < rows and square <= reach * reach
+        first, last = 0, len(circles) - world.movers
+        if holds:
+            cell = int(v) * int(columns) + int(u)
+            first, last = cells.firsts[cell], cells.firsts[cell + 1]
+        near = w[out + NEAR, lane]
+        for number in range(first, last):
+            k = world.movers + (cells.members[number] if holds else number)
+            px, py = x - circles[k, 0], y - circles[k, 1]
+            s = -(px * qx + py * qy) / (square if square > 0.0 else 1.0)
+            s = 0.0 if s < 0.0 else (1.0 if s > 1.0 else s)
+            px += s * qx
+            py += s * qy
+            gap = math.sqrt(px * px + py * py) - (circles[k, 4] + body)
+            near = gap if gap < near else near
+        w[out + NEAR, lane] = near
+
+
+@part
 def pass_field(w: Floats, lanes: int, out: int, squares: Floats, grid: Floats, body: float) -> None:
     """The least distance of one circle of the body from what the distance field is of."""
     for lane in range(lanes):
@@ -148,7 +175,11 @@ def approach(
     rooms(w, lanes, before, after, slope0, slope1, out, i, j, world.area, step)
     for k in range(len(world.body)):
         lead(w, lanes, before, after, slope0, slope1, out, world, k, step)
-        pass_circles(w, lanes, out, world.circles, world.body[k, 2], time, step)
+        if len(world.buckets.firsts) > 0:
+            pass_circles(w, lanes, out, world.circles[: world.movers], world.body[k, 2], time, step)
+            pass_near_circles(w, lanes, out, world, world.body[k, 2])
+        else:
+            pass_circles(w, lanes, out, world.circles, world.body[k, 2], time, step)
         if len(world.squares) > 0:
             pass_field(w, lanes, out, world.squares, world.grid, world.body[k, 2])
         for lane in range(lanes):

@@ -20,6 +20,8 @@ from gpsynth.optimizers import (
     CMAES,
     PSO,
     CMAESState,
+    DifferentialEvolution,
+    DifferentialEvolutionState,
     Optimizer,
     Progress,
     PSOState,
@@ -193,6 +195,8 @@ def _optimizer(
     if settings.optimizer == "cmaes":
         first = None if x0 is None else x0[int(np.argmin(objective(x0)))]
         return CMAES(lower, upper, size=size, sigma=settings.spread, restarts=0, x0=first)
+    if settings.optimizer == "shade":
+        return DifferentialEvolution(lower, upper, size=size, x0=x0)
     swarm = PSO.clerc if settings.optimizer == "clerc" else PSO.seed
     return swarm(lower, upper, size=size, x0=x0, swarms=settings.swarms)
 
@@ -229,9 +233,11 @@ def _plan(objective: Objective, found: Result[Any, Floats], history: History, be
     )
 
 
-def _particles(objective: Objective, state: PSOState | CMAESState) -> Particles:
+def _particles(objective: Objective, state: PSOState | DifferentialEvolutionState | CMAESState) -> Particles:
     if isinstance(state, PSOState):
         return Particles(Schedules(*objective.schedules(state.best_x)), state.best_costs)
+    if isinstance(state, DifferentialEvolutionState):
+        return Particles(Schedules(*objective.schedules(state.x)), state.costs)
     best = Schedules(*objective.schedules(state.best_x[np.newaxis]))
     return Particles(best, np.array([state.best_cost]))
 
@@ -242,6 +248,8 @@ def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
     if isinstance(state, PSOState):
         costs = objective(state.best_x)
         state, spent = rescore(state, costs), len(costs)
+    elif isinstance(state, DifferentialEvolutionState):
+        state, spent = replace(state, costs=objective(state.x)), len(state.x)
     else:
         state, spent = replace(state, best_cost=float(objective(state.best_x[np.newaxis])[0])), 1
     return replace(found.progress, state=state, evaluations=found.evaluations + spent, history=())

@@ -10,7 +10,7 @@ from gpsynth.errors import ProblemError
 from gpsynth.planning.weights import Weights
 
 Clear = Literal["path", "points"]
-Method = Literal["clerc", "seed", "cmaes"]
+Method = Literal["clerc", "seed", "shade", "cmaes"]
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class PlanSettings:
     beta: float = 0.25  # weight of the time
     gamma: float = 5.0  # weight of the obstacles
     margin: float = 0.004  # m, clearance that counts as none
-    optimizer: Method = "clerc"  # two swarms, "seed" being the paper's, or CMA-ES
+    optimizer: Method = "clerc"  # a swarm, "seed" being the paper's; differential evolution; CMA-ES
     swarms: int = 1  # side by side, sharing T+ alone; `seed` and `clerc` only
     particles: int = 64  # of each swarm
     iterations: int = 15  # in a round; the first rounds are shorter
@@ -50,8 +50,8 @@ class PlanSettings:
         for name, choices in (("obstacles", get_args(Clear)), ("optimizer", get_args(Method))):
             if getattr(self, name) not in choices:
                 raise ProblemError(f"{name} of a plan must be one of {choices}, not {getattr(self, name)!r}")
-        if self.optimizer == "cmaes" and self.swarms > 1:
-            raise ProblemError(f"CMA-ES searches alone; swarms is {self.swarms}")
+        if self.optimizer in ("shade", "cmaes") and self.swarms > 1:
+            raise ProblemError(f"the optimizer {self.optimizer!r} searches alone; swarms is {self.swarms}")
         if self.dwell is not None:
             shortest, longest = shaped("dwell, (shortest, longest) in s,", self.dwell, (2,))
             if not 0.0 <= shortest < longest:
