@@ -46,13 +46,13 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
             "clearance": check.clearance if np.isfinite(check.clearance) else None,
             "law": {"hash": report.law.hash, "formulas": list(report.law.formulas())},
             "controls": report.plan.trajectory.u.tolist(),
-            "trajectory": _once_a_period(check.trajectory).tolist(),
+            "trajectory": once_a_period(check.trajectory).tolist(),
             "schedule": {"points": schedule.points.tolist(), "dwell": schedule.dwell.tolist()},
         }
     return document
 
 
-def _once_a_period(trajectory: Floats) -> Floats:
+def once_a_period(trajectory: Floats) -> Floats:
     """The rows (t, x, y, theta) at every control period, and the last one."""
     periods = trajectory[:, 0] / PERIOD
     kept = np.abs(periods - np.round(periods)) < 1e-6
