@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Sequence
+from math import inf
 from pathlib import Path
 
 import click
@@ -87,22 +88,32 @@ def synthesize(
 @click.argument("scenario_file", metavar="SCENARIO.json", type=PATH)
 @click.option("--out", type=PATH, required=True, help="Folder for plan.json and its picture.")
 @click.option("--law", "law_file", metavar="LAW.json", type=PATH, help="[default: the law that comes along]")
+@click.option(
+    "--deadline",
+    type=click.FloatRange(min=0.0, min_open=True),
+    help="Seconds by the clock, after which the best plan so far is taken: not the same one every time.",
+)
 @seed_option()
 @threads_option
-def plan(scenario_file: Path, out: Path, law_file: Path | None, seed: int, threads: int) -> int:
-    """Stage 2: plan for a scenario.
+def plan(
+    scenario_file: Path, out: Path, law_file: Path | None, deadline: float | None, seed: int, threads: int
+) -> int:
+    """Stage 2: plan for a scenario. Ctrl-C ends the search, and what it has found is written.
 
     Exit code 0 with a plan, 3 if the goal is unreachable or no plan was found, 2 if the input is wrong; plan.json
     says which and why.
     """
     with status(LOADING):
+        from applications.rosbot.planner import Effort
         from applications.rosbot.scenario_file import read_scenario
         from applications.rosbot.show import print_plans, read_plan
         from applications.rosbot.stabilizer import default_law
         from applications.rosbot.stages import load_steering_law, run_plan
     name = read_scenario(scenario_file).name  # and every complaint about it before anything is written
     law = load_steering_law(law_file) if law_file else default_law()
-    made = read_plan(run_plan(begin(out, seed), scenario_file, law, seed=seed, threads=threads))
+    effort = Effort(deadline=deadline or inf)
+    path = run_plan(begin(out, seed), scenario_file, law, seed=seed, effort=effort, threads=threads)
+    made = read_plan(path)
     print_plans([(name, made)])
     return 0 if made.is_found else NO_PLAN
 

@@ -27,7 +27,7 @@ def follow(
     The problem is the one that is left: it starts where the robot now is, among obstacles where they now are.
     """
     count = len(previous.schedule.dwell)
-    order = np.argsort(previous.particles.costs, kind="stable")[: settings.particles // 2]
+    order = np.argsort(previous.particles.costs, kind="stable")[: settings.particles // 4]
     known = [previous.schedule, *(previous.particles.schedules[int(number)] for number in order)]
     left = [each.after(elapsed).split(count) for each in known]
     others = nearby(left[0], settings.particles, NEARNESS, stream(seed, FOLLOW, 0))

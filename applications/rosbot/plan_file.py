@@ -27,6 +27,7 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
         "format": FORMAT,
         "status": report.status,
         "reason": report.reason,
+        "ended": report.ended,
         "arrival_time": None,
         "clearance": None,
         "lower_bound": report.lower_bound,

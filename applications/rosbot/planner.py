@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 import numpy as np
@@ -139,19 +139,28 @@ class _Watch:
 
 
 def problem_of(scenario: Scenario, law: Law) -> Problem:
-    """The scenario as a problem for a law: least time into the tolerance, a little within its edge."""
-    position, heading = scenario.position_tolerance, scenario.heading_tolerance
+    """The scenario as a problem for a law under its limits: least time into the tolerance, a little within its edge."""
+    return replace(
+        _like(law, scenario.position_tolerance, scenario.heading_tolerance),
+        starts=scenario.start,
+        goal=scenario.goal,
+        horizon=max(PERIOD, scenario.time_limit - PERIOD),
+        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
+    )
+
+
+@lru_cache(maxsize=32)
+def _like(law: Law, position: float, heading: float) -> Problem:
+    """A problem with the programs of all problems for this law and tolerance (m, rad): to trace them takes a while."""
     shrunk = max(0.5 * position, position - INSIDE[0]), max(0.5 * heading, heading - INSIDE[1])
     return Problem(
         law.plant,
-        scenario.start,
-        scenario.goal,
+        np.zeros(3),
+        np.zeros(3),
         tolerance=[shrunk[0], shrunk[0], shrunk[1]],
-        horizon=max(PERIOD, scenario.time_limit - PERIOD),
         period=PERIOD,
         features=law.features,
         reached=reached(*shrunk),
-        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
     )
 
 
@@ -164,9 +173,14 @@ def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, La
             raise ScenarioError(
                 f"the law steers {', '.join(law.plant.control_names)}; a scenario needs v, omega"
             )
-    low, high = zip(scenario.speed_limits, scenario.turn_limits, strict=True)
-    adapted = [law.with_limits(low, high) for law in laws]
+    adapted = [_limited(law, scenario.speed_limits, scenario.turn_limits) for law in laws]
     return [(problem_of(scenario, law), law) for law in adapted]
+
+
+@lru_cache(maxsize=32)
+def _limited(law: Law, speed: tuple[float, float], turn: tuple[float, float]) -> Law:
+    low, high = zip(speed, turn, strict=True)
+    return law.with_limits(low, high)
 
 
 def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanReport:

@@ -13,9 +13,13 @@ DWELL = (0.0, 4.0)  # s
 BEYOND = 0.3  # m: a point ahead of where the next takes over keeps the controls saturated
 
 
-def schedules_along(guides: Sequence[Guide], points: int, count: int, rng: np.random.Generator) -> Schedules:
-    """`count` schedules, the guides (at least one) in turn: once as they are, then with noise."""
-    exact = Schedules.of([along(guide, points) for guide in guides[:count]])
+def schedules_along(guides: Sequence[Guide], points: int) -> Schedules:
+    """A schedule along each of the guides, at least one."""
+    return Schedules.of([along(guide, points) for guide in guides])
+
+
+def repeated(exact: Schedules, count: int, rng: np.random.Generator) -> Schedules:
+    """`count` schedules, the given ones in turn: once as they are, then with noise."""
     number = np.arange(count)
     return _disturbed(exact.take(number % len(exact)), np.where(number < len(exact), 0.0, 1.0), rng)
 

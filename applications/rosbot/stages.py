@@ -63,7 +63,10 @@ def run_plan(
     effort: Effort = Effort(),
     threads: int = 1,
 ) -> Path:
-    """Stage 2 into a run folder: the plan, its picture and a copy of its scenario; the log holds each improvement."""
+    """Stage 2 into a run folder: the plan, its picture and a copy of its scenario; the log holds each improvement.
+
+    A search that Ctrl-C ends is written as far as it came, and KeyboardInterrupt is raised after that.
+    """
     scenario, source = read_scenario(scenario_file), scenario_file.read_bytes()
     with status(f"planning {scenario.name}"):
         report = plan_scenario(scenario, [law], seed=seed, effort=effort, threads=threads)
@@ -72,6 +75,8 @@ def run_plan(
     write_bytes(scenario_beside(path), source)
     write_plan(report, path)
     redraw(path)
+    if report.ended == "interrupted":
+        raise KeyboardInterrupt
     return path
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from applications.rosbot.guides import Guide, direct_guides, guides_along, top_speed
 from applications.rosbot.routes import Route
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.seeds import anywhere, nearby, schedules_along
+from applications.rosbot.seeds import anywhere, nearby, repeated, schedules_along
 from gpsynth.arrays import Floats
 from gpsynth.law import Law
 from gpsynth.planning import Particles, Plan, PlanSettings, plans
@@ -29,8 +29,8 @@ class Effort:
     """How much is searched: swarms of a few rounds everywhere, more for the best, then refinement."""
 
     points: int = 6
-    swarms: int = 2  # at least, on every way, however few the laws
-    scouts: PlanSettings = PlanSettings(particles=32, iterations=12, rounds=3)
+    swarms: int = 3  # at least, on every way, however few the laws
+    scouts: PlanSettings = PlanSettings(particles=24, iterations=12, rounds=3)
     chasers: PlanSettings = PlanSettings(particles=48, iterations=15, rounds=6, patience=1.1)
     refiners: PlanSettings = PlanSettings(particles=32, iterations=30, rounds=5, patience=1.02)
     followers: PlanSettings = PlanSettings(particles=32, iterations=4, rounds=2)  # of a previous plan
@@ -160,17 +160,22 @@ class Search:
     def _scouts(self) -> Iterator[Task]:
         """For each law swarms along the guides of every way, every fourth particle anywhere."""
         effort, teams = self.effort, len(self.problems)
-        ways = [way for way in self.ways for _ in range(-(-effort.swarms // teams))]
+        exact = [schedules_along(way, effort.points) if way else None for way in self.ways]
+        ways = [
+            (way, each)
+            for way, each in zip(self.ways, exact, strict=True)
+            for _ in range(-(-effort.swarms // teams))
+        ]
         settings = replace(effort.scouts, points=effort.points, swarms=len(ways))
         for team in range(teams):
             rng = stream(self.seed, SCOUT, self.attempt, team, 0)
             initial = []
-            for way in ways:
-                guided = settings.particles * 3 // 4 if way else 0
-                if way:
-                    initial.append(schedules_along(way, settings.points, guided, rng))
+            for _, known in ways:
+                guided = settings.particles * 3 // 4 if known else 0
+                if known:
+                    initial.append(repeated(known, guided, rng))
                 initial.append(self._anywhere(settings.particles - guided, rng))
-            promises = [way[0].score if way else np.inf for way in ways]
+            promises = [way[0].score if way else np.inf for way, _ in ways]
             path = (SCOUT, self.attempt, team, 1)
             yield Task(team, settings, Schedules.joined(initial), promises, path)
 

@@ -129,7 +129,7 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
     size = settings.particles * settings.swarms
     history: History = ((0, objective.budget),)
     best, start, end = None, None, 0
-    for length in _lengths(settings):
+    for length in lengths(settings):
         end += size * length
         found = minimize(objective, optimizer, seed=seed, path=path, budget=end, limits=limits, resume=start)
         latest = _plan(objective, found, history, best)
@@ -144,14 +144,14 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
         end += start.evaluations - found.evaluations
 
 
-def _lengths(settings: PlanSettings) -> list[int]:
+def lengths(settings: PlanSettings) -> list[int]:
     """The generations of each round: few at first, when T+ is far off, then `iterations`."""
-    left, length, lengths = settings.rounds * settings.iterations, 1, list[int]()
+    left, length, found = settings.rounds * settings.iterations, 1, list[int]()
     while left:
-        lengths.append(min(length, settings.iterations, left))
-        left -= lengths[-1]
+        found.append(min(length, settings.iterations, left))
+        left -= found[-1]
         length *= 2
-    return lengths
+    return found
 
 
 def default_region(problem: Problem) -> tuple[Floats, Floats]:

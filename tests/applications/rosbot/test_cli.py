@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from applications.rosbot import stages
 from applications.rosbot.__main__ import cli, main
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.polar_law import polar_law
@@ -129,6 +130,31 @@ def test_the_same_seed_gives_the_same_controls(scenario_file, law_file, tmp_path
         plans.append(json.loads((out / "plan.json").read_text()))
     assert plans[0]["controls"] == plans[1]["controls"]
     assert plans[0]["schedule"] == plans[1]["schedule"]
+
+
+def test_a_deadline_ends_the_search_with_what_is_there(scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file, "--deadline", "0.001") in (0, 3)
+    assert json.loads((out / "plan.json").read_text())["ended"] == "deadline"
+
+
+def test_what_an_interrupted_search_has_found_is_written(
+    capsys, monkeypatch, scenario_file, law_file, tmp_path
+):
+    def stop(report):
+        if report.status == "planned":
+            raise KeyboardInterrupt
+
+    search = stages.plan_scenario
+    monkeypatch.setattr(
+        stages, "plan_scenario", lambda *given, **named: search(*given, **named, callback=stop)
+    )
+    out = tmp_path / "out"
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file) == 130
+    plan = json.loads((out / "plan.json").read_text())
+    assert (plan["status"], plan["ended"]) == ("planned", "interrupted")
+    _replays(plan, SCENARIO)
+    assert "interrupted" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -15,7 +15,7 @@ from applications.rosbot.polar_law import HOT, SATURATING, polar_law
 from applications.rosbot.replay import replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.seeds import along, nearby, schedules_along
+from applications.rosbot.seeds import along, nearby, repeated, schedules_along
 from gpsynth.errors import ScenarioError
 from gpsynth.planning import PlanSettings
 from gpsynth.seeds import stream
@@ -262,7 +262,7 @@ def test_a_schedule_along_a_guide_takes_its_time_and_points_at_its_cusps():
 
 def test_schedules_repeat_the_guides_with_noise():
     guides = direct_guides(scene())[:2]
-    schedules = schedules_along(guides, 4, 5, stream(1))
+    schedules = repeated(schedules_along(guides, 4), 5, stream(1))
     assert len(schedules) == 5
     assert np.array_equal(schedules[1].points, along(guides[1], 4).points)
     assert not np.array_equal(schedules[2].points, schedules[0].points)
