@@ -135,6 +135,13 @@ class Evaluator:
         clock = self.until(horizon, reach=reach)
         return self._roll(law.program, law.parameters[np.newaxis], plans, clock, len(plans.points))
 
+    def stays(self, rollouts: Rollouts) -> npt.NDArray[np.bool_]:
+        """Which of these rollouts (N, S) arrive and end within the tolerance, whether they stop there or not."""
+        ends = np.concatenate([rollouts.final, np.broadcast_to(self.goals, rollouts.final.shape)], axis=-1)
+        measure = self.problem.arrival(ends.reshape(-1, ends.shape[-1]))[:, 0]
+        within: npt.NDArray[np.bool_] = measure.reshape(rollouts.arrival.shape) <= 0.0
+        return within & np.isfinite(rollouts.arrival)
+
     def _plans(self, points: Floats, dwell: Floats, reach: float) -> _Plans:
         places, times = numbers("points", points), numbers("dwell times", dwell)
         states = self.problem.starts.shape[1]

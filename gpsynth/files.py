@@ -20,7 +20,7 @@ SURROGATES = re.compile("[\ud800-\udfff]")
 
 def read_json(path: str | os.PathLike[str], most_bytes: int = MOST_BYTES) -> Any:
     """The content of a JSON file; raises FileError if it is missing, too large or not strict JSON."""
-    return parse_json(_read(Path(path), most_bytes), str(path))
+    return parse_json(_read(_path(path), most_bytes), str(path))
 
 
 def parse_json(content: bytes | str, source: str = "the text") -> Any:
@@ -71,7 +71,7 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
 
 def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
     """Write a file through a temporary one beside it; raises FileError and leaves nothing behind on failure."""
-    target = Path(path)
+    target = _path(path)
     temporary = target.with_name(f".{target.name}.{secrets.token_hex(8)}.tmp")
     try:
         with temporary.open("xb") as file:
@@ -88,7 +88,7 @@ def write_bytes(path: str | os.PathLike[str], content: bytes) -> None:
 
 def make_folder(path: str | os.PathLike[str]) -> Path:
     """The folder, made with its parents if it is not there; raises FileError if that fails."""
-    folder = Path(path)
+    folder = _path(path)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -100,6 +100,13 @@ def check_readable(path: Path) -> None:
     """Raise OSError for a pipe or device, whose reading might never end."""
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise OSError(errno.EINVAL, "it is not a regular file")
+
+
+def _path(path: str | os.PathLike[str]) -> Path:
+    try:
+        return Path(path)
+    except TypeError:
+        raise FileError(f"a path must be text or a Path, got {path!r}") from None
 
 
 def _read(path: Path, most_bytes: int) -> bytes:

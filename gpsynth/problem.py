@@ -2,7 +2,7 @@
 
 import functools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -124,6 +124,11 @@ class Problem:
         for name, value in values.items():
             object.__setattr__(self, name, value)
         _check(self)
+
+    def of(self, rows: Sequence[int]) -> "Problem":
+        """The same problem from these of its starts, by number, each under its draw."""
+        draws = None if self.draws is None else self.draws.of(rows)
+        return replace(self, starts=self.starts[list(rows)], draws=draws)
 
     @cached_property
     def rates(self) -> Program:

@@ -4,33 +4,31 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from itertools import groupby
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
-import numpy.typing as npt
 
 from gpsynth.arrays import Floats
+from gpsynth.batch_cost import BatchCost
 from gpsynth.checks import check_function, check_kind, check_whole
-from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.protocol import Encoding
 from gpsynth.epochs import Epochs
 from gpsynth.errors import LawError, OptimizerError, ProblemError
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.guesses import Guess, genomes_of
 from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
-from gpsynth.objective import PROBLEMS_OWN, Function, Objective, as_objective, score
-from gpsynth.optimizers import CMAES, Progress, minimize
+from gpsynth.objective import Function, Objective, as_objective
+from gpsynth.optimizers import Progress, minimize
 from gpsynth.plotting import plot_front
 from gpsynth.problem import Problem
 from gpsynth.program import Program
 from gpsynth.proportions import lower_bound
-from gpsynth.refitting import improved, mean_cost
 from gpsynth.runs import INTERRUPTED, checkpoint_in, run_search
-from gpsynth.structure_search import Candidate, Individual, StructureSearch
+from gpsynth.structure_search import Individual, StructureSearch
 from gpsynth.tables import write_csv
+from gpsynth.tuning import Tuner
 from gpsynth.variational_ga import VariationalGA
 
 if TYPE_CHECKING:
@@ -38,7 +36,7 @@ if TYPE_CHECKING:
 
 G = TypeVar("G")
 
-SEARCH, TUNING = 1, 2  # stages of the random streams
+SEARCH = 1  # stage of the random streams
 MERIT = 1e-3  # share of the cost that a larger law of the front must save
 
 
@@ -81,6 +79,10 @@ class SynthesisResult:
     def law(self) -> Law:
         """The law of the best entry."""
         return self.best.law
+
+    def __repr__(self) -> str:
+        best = f", best: {'; '.join(self.law.formulas())}" if self.front else ""
+        return f"<SynthesisResult of {len(self.front)} laws{best}>"
 
     def __str__(self) -> str:
         return self.table()
@@ -145,6 +147,7 @@ def synthesize(
     tuned: Problem | None = None,
     trials: Sequence[Problem] = (),
     islands: Islands | None = None,
+    sample: int | None = None,
     folder: str | os.PathLike[str] | None = None,
     resume: bool = False,
     threads: int = 2,
@@ -153,11 +156,12 @@ def synthesize(
 ) -> SynthesisResult:
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
-    An evaluation is one parameter vector of one formula rolled out from all starts. The search may use a `rough`
-    problem (fewer starts, longer steps). Every law of the front is tuned on `problem` itself, or on the problem
-    `tuned`, with at most `tuning` evaluations. The front that comes back is scored on `problem` and on all `trials`
-    (other starts, shorter steps, another plant), which no search has seen, so that a law that only fits its training
-    loses.
+    An evaluation is one parameter vector of one formula rolled out from all starts, or from a `sample` of them: search
+    and tuning then see so many at a time, the first, and later those of all that the best laws miss. The search may use
+    a `rough` problem (fewer starts, longer steps). Every law of the front is tuned on `problem` itself, or on the
+    problem `tuned`, with at most `tuning` evaluations, and as many again up to twice while it misses starts beyond its
+    sample. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps, another
+    plant), which no search has seen, so that a law that only fits its training loses.
 
     The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. An `objective`, a
     function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With a `folder`
@@ -172,7 +176,10 @@ def synthesize(
     check_encoding(problem, encoding)
     check_search(seed, budget, threads, callback)
     check_whole("tuning", tuning, 0)
-    _check_parts(encoding, search, islands, rough, tuned, trials)
+    _check_parts(encoding, search, rough, tuned, trials)
+    _check_islands(islands, search)
+    for each in (rough or problem, tuned or problem):
+        _check_sample(sample, each)
     shape = None if islands is None else (islands, budget)  # shares depend on the budget
     wanted = as_objective(objective)
     strategy: Any = search or StructureSearch(encoding)
@@ -183,13 +190,19 @@ def synthesize(
         "search": strategy,
         "objective": wanted,
         "number of islands or their budget": shape,
+        "sample": sample,
     }
     cost = BatchCost(rough or problem, threads if islands is None else 1, wanted)
+    if islands is None:
+        run: Callable[..., Any] = minimize
+        cost = cost if sample is None else cost.of(range(sample))
+    else:
+        run = partial(search_islands, islands=islands, sample=sample, workers=threads)
     found, reason = run_search(
         cost,
         strategy,
         checkpoint_in(folder, parts, seed),
-        run=minimize if islands is None else partial(search_islands, islands=islands, workers=threads),
+        run=run,
         resume=resume,
         seed=seed,
         budget=budget,
@@ -199,14 +212,11 @@ def synthesize(
     )
     tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
-    tuner = Evaluator(tuned or problem)
+    tuner = Tuner(tuned or problem, wanted, encoding.space, sample, seed, tuning)
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
         number, individual = numbered
-        values = _tuned(
-            tuner, encoding.space, individual, wanted, seed=seed, budget=tuning, path=(TUNING, number)
-        )
-        return _entry(evaluators, individual.program, values, wanted)
+        return _entry(evaluators, individual.program, tuner(individual, number), wanted)
 
     with ThreadPoolExecutor(threads) as pool:
         entries = list(pool.map(entry, enumerate(found.state.front)))
@@ -242,17 +252,12 @@ def check_search(seed: int, budget: int, threads: int, callback: object) -> None
 
 
 def _check_parts(
-    encoding: Encoding[Any], search: object, islands: object, rough: object, tuned: object, trials: object
+    encoding: Encoding[Any], search: object, rough: object, tuned: object, trials: object
 ) -> None:
     check_kind("search", search, StructureSearch, Epochs, VariationalGA, optional=True)
     inner = search.search if isinstance(search, Epochs) else search
     if isinstance(inner, StructureSearch | VariationalGA):
         check_same(encoding, inner.encoding)
-    check_kind("islands", islands, Islands, optional=True)
-    if islands is not None and not isinstance(search, StructureSearch | None):
-        raise OptimizerError(
-            f"islands merge, which a {type(search).__name__} cannot; use a StructureSearch, or no islands"
-        )
     check_kind("rough", rough, Problem, optional=True)
     check_kind("tuned", tuned, Problem, optional=True)
     check_kind("trials", trials, list, tuple)
@@ -262,53 +267,22 @@ def _check_parts(
             check_encoding(cast(Problem, other), encoding, name)
 
 
-@dataclass(frozen=True, eq=False)
-class BatchCost:
-    """The cost function of a structure search: candidates with one program go to the kernel together."""
-
-    problem: Problem
-    threads: int = 1
-    objective: Objective = PROBLEMS_OWN
-
-    def __call__(self, batch: Sequence[Candidate[Any]]) -> Floats:
-        """Costs (N, S) of N candidates."""
-        groups = [list(group) for _, group in groupby(batch, key=lambda candidate: id(candidate.program))]
-
-        def of_group(group: list[Candidate[Any]]) -> Floats:
-            values = np.array([candidate.values for candidate in group]).reshape(len(group), -1)
-            bound = max(candidate.bound for candidate in group)
-            return score(self.evaluator, group[0].program, values, self.objective, bound)
-
-        with ThreadPoolExecutor(self.threads) as pool:
-            return np.concatenate(list(pool.map(of_group, groups)))
-
-    def __reduce__(self) -> tuple[type["BatchCost"], tuple[Problem, int, Objective]]:
-        return BatchCost, (self.problem, self.threads, self.objective)
-
-    @cached_property
-    def evaluator(self) -> Evaluator:
-        """One of each process: what it caches would not survive the way to another."""
-        return Evaluator(self.problem)
+def _check_islands(islands: object, search: object) -> None:
+    check_kind("islands", islands, Islands, optional=True)
+    if islands is not None and not isinstance(search, StructureSearch | None):
+        raise OptimizerError(
+            f"islands merge, which a {type(search).__name__} cannot; use a StructureSearch, or no islands"
+        )
 
 
-def _tuned(
-    evaluator: Evaluator,
-    space: ParameterSpace,
-    individual: Individual[Any],
-    objective: Objective,
-    *,
-    seed: int,
-    budget: int,
-    path: tuple[int, ...],
-) -> Floats:
-    """The numbers of a front member, tuned on the evaluator's problem."""
-    values = individual.values
-    if len(values) == 0 or budget < 1:
-        return values
-    lower, upper = np.full(len(values), space.lower), np.full(len(values), space.upper)
-    optimizer = CMAES(lower, upper, x0=values, sigma=0.02, restarts=0)
-    cost = mean_cost(evaluator, individual.program, objective)
-    return improved(cost, values, optimizer, seed=seed, budget=budget, path=path)
+def _check_sample(sample: int | None, problem: Problem) -> None:
+    if sample is None:
+        return
+    check_whole("sample", sample, 1)
+    if sample > len(problem.starts):
+        raise ProblemError(
+            f"a sample of {sample} starts is more than the {len(problem.starts)} that a problem has"
+        )
 
 
 def _entry(
@@ -319,7 +293,7 @@ def _entry(
         evaluator.of_program(program, values[np.newaxis], paths=objective.paths) for evaluator in evaluators
     ]
     arrival = np.concatenate([each.arrival[0] for each in rollouts])
-    there = [_there(*pair) for pair in zip(evaluators, rollouts, strict=True)]
+    there = [evaluator.stays(each)[0] for evaluator, each in zip(evaluators, rollouts, strict=True)]
     reached = np.concatenate(there)
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
@@ -330,14 +304,6 @@ def _entry(
         worst_time=float(arrival[reached].max()) if reached.any() else float("inf"),
         reached_at_least=min((lower_bound(int(each.sum()), len(each)) for each in there[1:]), default=None),
     )
-
-
-def _there(evaluator: Evaluator, rollouts: Rollouts) -> npt.NDArray[np.bool_]:
-    """Which rollouts (S,) of one candidate end within the tolerance, having stopped there or not."""
-    ends = np.hstack([rollouts.final[0], evaluator.goals])
-    within: npt.NDArray[np.bool_] = evaluator.problem.arrival(ends)[:, 0] <= 0.0
-    there: npt.NDArray[np.bool_] = within & np.isfinite(rollouts.arrival[0])
-    return there
 
 
 def _front(entries: Sequence[FrontEntry]) -> tuple[FrontEntry, ...]:

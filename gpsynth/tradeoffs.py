@@ -51,6 +51,9 @@ class Tradeoffs:
     evaluations: int
     reason: str
 
+    def __repr__(self) -> str:
+        return f"<Tradeoffs of {len(self.front)} laws between {', '.join(self.objectives)}>"
+
     def __str__(self) -> str:
         return self.table()
 

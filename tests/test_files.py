@@ -76,6 +76,12 @@ def test_missing_file_is_named(tmp_path):
         read_json(tmp_path / "nothing.json")
 
 
+def test_a_number_is_no_path(tmp_path):
+    for function in (read_json, make_folder, lambda path: write_text(path, "")):
+        with pytest.raises(FileError, match="a path must be text or a Path, got 3"):
+            function(3)
+
+
 def test_folder_is_not_a_file(tmp_path):
     with pytest.raises(FileError, match="cannot be read"):
         read_json(tmp_path)

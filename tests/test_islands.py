@@ -3,7 +3,7 @@
 import os
 import signal
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import joblib
@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import gpsynth as gs
+from gpsynth.batch_cost import BatchCost
 from gpsynth.errors import OptimizerError
 from gpsynth.islands import Islands, search_islands
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import BatchCost
 
 ISLANDS = Islands(4)
 BUDGET = 1_200
@@ -107,6 +107,17 @@ def test_resuming_after_any_level_changes_nothing(search):
     whole = _found(search, checkpoint=kept.append)
     for level in kept:
         assert _costs(_found(search, resume=level)) == _costs(whole)
+
+
+def test_on_hard_starts_too_it_is_resumed_and_runs_anywhere(search):
+    kept = []
+    settings = {"seed": 1, "budget": BUDGET, "path": (1,), "islands": ISLANDS, "sample": 2}
+    settings |= {"strategy": search, "cost": BatchCost(replace(PROBLEM, horizon=2.0))}
+    whole = search_islands(**settings, checkpoint=kept.append)
+    assert len(kept[0].starts) == 2
+    assert whole.progress.islands[0].evaluations <= BUDGET
+    for level in kept:
+        assert _costs(search_islands(**settings, resume=level)) == _costs(whole)
 
 
 def test_a_callback_ends_it_after_a_level(search):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError, TracingError
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
@@ -126,6 +127,15 @@ def test_replace_keeps_what_is_not_replaced():
     assert changed.arrival == made.arrival
     assert changed.hold is False
     assert changed.starts.shape == (1, 3)
+
+
+def test_a_problem_from_some_of_its_starts_has_their_draws():
+    draws = Draws(delay=[0.0, 0.1, 0.2])
+    whole = problem(starts=[*STARTS, [0.0, 0.0, 1.0]], draws=draws)
+    some = whole.of([2, 0])
+    assert np.array_equal(some.starts, whole.starts[[2, 0]])
+    assert some.draws.delay.tolist() == [0.2, 0.0]
+    assert problem().of([0]).draws is None
 
 
 def test_replacing_the_tolerance_moves_the_default_arrival():

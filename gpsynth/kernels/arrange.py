@@ -11,6 +11,7 @@ from numba import types
 
 from gpsynth.arrays import Ints
 from gpsynth.kernels.compile import CODE, INTEGERS, OUT_CODE, kernel, part
+from gpsynth.kernels.free_rows import give_back, take
 from gpsynth.kernels.machine import SINE_AND_COSINE
 from gpsynth.kernels.pairs import FIRST_NUMBERS, FIRSTS, JOINED, SECONDS, SQUARE
 from gpsynth.operations import CODES
@@ -18,16 +19,6 @@ from gpsynth.operations import CODES
 _SINE, _COSINE = CODES["sin"], CODES["cos"]
 _INTEGER = types.int64
 _OUT_INTEGERS = types.Array(types.int32, 1, "C")
-
-
-@part
-def _row(stack: Any) -> Any:
-    """A free row."""
-    if stack[0] > 0:
-        stack[0] -= 1
-        return stack[2 + stack[0]]
-    stack[1] += 1
-    return stack[1] - 1
 
 
 @part
@@ -39,20 +30,19 @@ def _arity(operation: int, arities: Any) -> Any:
 
 
 @part
-def _release(code: Any, i: int, arities: Any, last: Any, moved: Any, stack: Any, first: int) -> None:
+def _release(code: Any, i: int, arities: Any, last: Any, moved: Any, free: Any, first: int) -> None:
     """Give the rows back that instruction i is the last to read."""
     for k in range(2, 2 + _arity(code[i, 0], arities)):
         row = code[i, k]
         if last[row] == i and moved[row] >= first:
             last[row] = -1
-            stack[2 + stack[0]] = moved[row]
-            stack[0] += 1
+            give_back(moved[row], free)
 
 
 @part
-def _write(code: Any, i: int, end: int, last: Any, moved: Any, stack: Any, out: Any) -> None:
+def _write(code: Any, i: int, end: int, last: Any, moved: Any, free: Any, out: Any) -> None:
     """Write instruction i; if it is a sine, together with the cosine of the same row in its part, or the reverse."""
-    moved[code[i, 1]] = _row(stack)
+    moved[code[i, 1]] = take(free)
     out[0], out[1] = code[i, 0], moved[code[i, 1]]
     for k in range(2, 5):
         out[k] = moved[code[i, k]]
@@ -60,7 +50,7 @@ def _write(code: Any, i: int, end: int, last: Any, moved: Any, stack: Any, out: 
         for j in range(i + 1, end):
             other, is_partner = code[j, 1], code[j, 0] == _SINE + _COSINE - code[i, 0]
             if is_partner and code[j, 2] == code[i, 2] and last[other] >= 0 and moved[other] < 0:
-                moved[other] = _row(stack)
+                moved[other] = take(free)
                 out[0], out[3] = SINE_AND_COSINE, moved[other]
                 if code[i, 0] == _COSINE:
                     out[1], out[3] = out[3], out[1]
@@ -198,15 +188,15 @@ def arrange(
         if moved[row] == 0:
             moved[row] = total
             total += 1
-    stack = np.empty(len(code) + 2, np.int32)  # free rows, behind their number and that of all rows
-    stack[0], stack[1] = 0, total
+    free = np.empty(len(code) + 2, np.int32)
+    free[0], free[1] = 0, total
     begin = written = 0
     for k in range(len(ends)):
         for i in range(begin, ends[k]):
             if last[code[i, 1]] >= 0:
-                _release(code, i, arities, last, moved, stack, total)
+                _release(code, i, arities, last, moved, free, total)
                 if moved[code[i, 1]] < 0:  # else it came with its partner
-                    _write(code, i, ends[k], last, moved, stack, out[written])
+                    _write(code, i, ends[k], last, moved, free, out[written])
                     written += 1
         begin, ends[k] = ends[k], written
-    return int(stack[1])
+    return int(free[1])

@@ -25,29 +25,13 @@ from gpsynth.kernels.data_code import (
     SUB_NUMBER,
     VARIABLE,
 )
+from gpsynth.kernels.free_rows import give_back, take
 from gpsynth.kernels.genomes import arity
 
 _INTEGERS = types.Array(types.int32, 1, "C")
 _CODE = types.Array(types.int32, 2, "C")
 _NUMBERS = types.Array(types.float64, 1, "C")
 _NONE = -1
-
-
-@part
-def _take_row(free: Any) -> Any:
-    """The row given back last, or a new one. `free`: how many are free, how many rows there are, which are free."""
-    if free[0] > 0:
-        free[0] -= 1
-        return free[2 + free[0]]
-    free[1] += 1
-    return free[1] - 1
-
-
-@part
-def _give_back(node: int, row: Any, free: Any) -> None:
-    free[2 + free[0]] = row[node]
-    free[0] += 1
-    row[node] = _NONE
 
 
 @part
@@ -133,14 +117,15 @@ def place(
             for k in range(operands):
                 operand = y if k else x
                 if row[operand] < 0:
-                    row[operand] = _take_row(free)
+                    row[operand] = take(free)
                     length = _write(code, immediate, length, FILL, row[operand], 0, 0, numbers[operand])
             first, second = row[x], row[y]
             for k in range(operands):
                 operand = y if k else x
                 if last[operand] == node and ops[operand] > VARIABLE and row[operand] >= 0:
-                    _give_back(operand, row, free)
-            row[node] = _take_row(free)
+                    give_back(row[operand], free)
+                    row[operand] = _NONE
+            row[node] = take(free)
             before, other = (x, second) if x == recent else (y, first)
             follows = x != y and before == recent and last[before] == node
             if follows and op <= MUL and code[length - 1, 0] <= MUL:
@@ -150,10 +135,11 @@ def place(
             recent = node
         if output[node] >= 0:
             if row[node] < 0:
-                row[node] = _take_row(free)
+                row[node] = take(free)
                 length = _write(code, immediate, length, FILL, row[node], 0, 0, numbers[node])
             kind = SCORE if target >= 0 else EMIT
             length = _write(code, immediate, length, kind, output[node], row[node], max(target, 0), 0.0)
             if last[node] == _NONE and op > VARIABLE:
-                _give_back(node, row, free)
+                give_back(row[node], free)
+                row[node] = _NONE
     return length, free[1]

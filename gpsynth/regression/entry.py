@@ -47,7 +47,9 @@ def regress(
     left, and parts of their formulas as columns (`gpsynth/regression/several.py:search_each`). Their fronts become one
     (`gpsynth/regression/joint.py:joined`): each formula of it has k outputs, and what two of them share is computed and
     counted once. `target_name` gives k names then, or begins them: y0, y1, ...
-    Raises RegressionError for what does not fit together.
+
+    Columns have the `names` given, or those of a DataFrame, or are called x0, x1, ... Raises RegressionError for what
+    does not fit together.
     """
     rows, targets = _matrix(inputs), _targets(target)
     if len(targets) != len(rows):
@@ -58,7 +60,8 @@ def regress(
     wanted = _functions(functions)
     budget = _budget(evaluations, seconds)
     check_whole("seed", seed, 0, RegressionError)
-    labels, outputs = _names(names, target_name, rows.shape[1], targets.shape[1])
+    given_names = getattr(inputs, "columns", None) if names is None else names
+    labels, outputs = _names(given_names, target_name, rows.shape[1], targets.shape[1])
     begin = time.process_time()
     rows, targets, given = merged(rows, targets, given)
     found = search_each(rows, targets, given, wanted, budget=budget, seed=seed)

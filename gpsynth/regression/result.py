@@ -57,6 +57,9 @@ class RegressionResult:
         tuple[int, str, float], ...
     ]  # evaluations, what found it, error of that target; at each progress
 
+    def __repr__(self) -> str:
+        return f"<RegressionResult of {len(self.front)} formulas, best: {self.best}>"
+
     def __str__(self) -> str:
         return self.table()
 

@@ -17,9 +17,9 @@ import joblib
 import gpsynth as gs
 from applications.rosbot.stabilizer import OPERATIONS, SYMMETRIES, stabilization, training_poses
 from examples import planar_quadrotor
+from gpsynth.batch_cost import BatchCost
 from gpsynth.islands import search_islands
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import BatchCost
 from tests.bench import robot_a
 from tests.bench.chance import Runs, corrected, paired
 

@@ -17,11 +17,11 @@ import numpy as np
 import gpsynth as gs
 from applications.rosbot.stabilizer import poses, stabilization
 from examples import cart_pole, landau_oscillator
+from gpsynth.batch_cost import BatchCost
 from gpsynth.encodings.columns import basic_columns
 from gpsynth.encodings.complete_tree import basic_tree
 from gpsynth.encodings.layers import basic_layers
 from gpsynth.structure_search import Candidate, Cost
-from gpsynth.synthesis import BatchCost
 from tests.bench import robot_a
 from tests.bench.chance import chances
 from tests.bench.problems import HELD_OUT

@@ -5,13 +5,13 @@ import time
 
 import numpy as np
 
+from gpsynth.batch_cost import BatchCost
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.optimizers import minimize
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import BatchCost
 from tests.bench.measure import REPEATS
 
 STARTS = 8

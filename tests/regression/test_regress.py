@@ -94,6 +94,18 @@ def test_a_result_goes_to_the_exporters() -> None:
     assert result.formulas()[-1].startswith("u = ")
 
 
+class _Frame(np.ndarray):
+    """An array with the names of its columns, as far as a DataFrame is one."""
+
+    columns = ("speed", "load")
+
+
+def test_a_data_frame_gives_its_columns_their_names() -> None:
+    result = gpsynth.regress(ROWS[:, :2].view(_Frame), 2.0 * A + B)
+    assert result.program.inputs == ("speed", "load")
+    assert repr(result) == f"<RegressionResult of {len(result.front)} formulas, best: {result.best}>"
+
+
 def test_a_constant_target_is_its_value() -> None:
     result = gpsynth.regress(ROWS, np.full(60, 2.5))
     assert result.predict(ROWS) == pytest.approx(np.full(60, 2.5))
