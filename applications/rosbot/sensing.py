@@ -32,13 +32,23 @@ class Sensor:
         if moving > self.most:
             raise ScenarioError(f"{moving} circles move; the sensor can tell {self.most} apart")
 
+    def knows(self, circles: Floats, position: Floats) -> Flags:
+        """Which of the circles (c, 5) rest, or are near to a position (2,)."""
+        near: Flags = np.hypot(*(circles[:, :2] - position).T) - circles[:, 4] <= self.reach
+        return near | ~_moves(circles)
+
     def seen(self, scenario: Scenario, position: Floats, time: float) -> Floats:
         """The circles (s, 5) known at a position (2,), where they are at a time (s)."""
-        circles = scenario.circles.copy()
-        circles[:, :2] += time * circles[:, 2:4]
-        near = np.hypot(*(circles[:, :2] - position).T) - circles[:, 4] <= self.reach
-        known: Floats = circles[near | ~_moves(circles)]
+        circles = moved(scenario.circles, time)
+        known: Floats = circles[self.knows(circles, position)]
         return known
+
+
+def moved(circles: Floats, time: float) -> Floats:
+    """The circles (c, 5) after a time (s)."""
+    later = circles.copy()
+    later[:, :2] += time * later[:, 2:4]
+    return later
 
 
 def scene_ahead(scenario: Scenario, circles: Floats, pose: Floats, delay: float) -> Scenario:
@@ -47,13 +57,12 @@ def scene_ahead(scenario: Scenario, circles: Floats, pose: Floats, delay: float)
     A circle that the robot would overlap is shrunk until it does not, and a pose out of bounds is moved inside: where
     it should not be it is all the same, and has to leave.
     """
-    moved = circles.copy()
-    moved[:, :2] += delay * moved[:, 2:4]
+    later = moved(circles, delay)
     low, high = scenario.bounds.reshape(2, 2).T
     start = np.append(np.clip(pose[:2], low, high), np.remainder(pose[2] + np.pi, 2.0 * np.pi) - np.pi)
-    gap = np.hypot(*(moved[:, :2] - start[:2]).T) * (1.0 - 1e-9) - scenario.radius
-    moved[:, 4] = np.minimum(moved[:, 4], gap)
-    return replace(scenario, start=start, circles=moved[gap >= 0.0])
+    gap = np.hypot(*(later[:, :2] - start[:2]).T) * (1.0 - 1e-9) - scenario.radius
+    later[:, 4] = np.minimum(later[:, 4], gap)
+    return replace(scenario, start=start, circles=later[gap >= 0.0])
 
 
 def _moves(circles: Floats) -> Flags:
