@@ -214,23 +214,10 @@ class Evaluator:
             World(position, circles, np.array(obstacles.bounds, dtype=np.float64), float(self.margin))
         )
 
-    @cached_property
+    @property
     def frame(self) -> Frame:
         """The closed loop but for the law: what does not change from candidate to candidate."""
-        problem, given = self.problem, self.conditions
-        noisy, late = len(given.noise) > 0, given.slots > 0
-        features = problem.measured if noisy else problem.features
-        parts = (features, problem.plant.saturation, problem.rates, problem.arrival)
-        names = problem.plant.state_names
-        extent = Extent(
-            states=len(names),
-            plant=given.parameters.shape[1],
-            noise=noisy,
-            acting=len(given.rest) if late else 0,
-            slots=given.slots,
-        )
-        angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
-        return frame(Loop(*map(instructions, parts)), extent, angles)
+        return _frame(self.problem)
 
     @cached_property
     def conditions(self) -> Conditions:
@@ -291,6 +278,24 @@ def roll(
         first = range(0, total, slice_size)
         list(pool.map(lambda begin: run(begin, min(begin + slice_size, total)), first))
     return result
+
+
+@lru_cache(maxsize=16)
+def _frame(problem: Problem) -> Frame:
+    given = Evaluator(problem).conditions
+    noisy, late = len(given.noise) > 0, given.slots > 0
+    features = problem.measured if noisy else problem.features
+    parts = (features, problem.plant.saturation, problem.rates, problem.arrival)
+    names = problem.plant.state_names
+    extent = Extent(
+        states=len(names),
+        plant=given.parameters.shape[1],
+        noise=noisy,
+        acting=len(given.rest) if late else 0,
+        slots=given.slots,
+    )
+    angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
+    return frame(Loop(*map(instructions, parts)), extent, angles)
 
 
 @lru_cache(maxsize=16)

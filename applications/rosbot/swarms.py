@@ -33,7 +33,7 @@ class Effort:
     scouts: PlanSettings = PlanSettings(particles=24, iterations=12, rounds=3)
     chasers: PlanSettings = PlanSettings(particles=48, iterations=15, rounds=6, patience=1.1)
     refiners: PlanSettings = PlanSettings(particles=32, iterations=30, rounds=5, patience=1.02)
-    followers: PlanSettings = PlanSettings(particles=32, iterations=4, rounds=2)  # of a previous plan
+    followers: PlanSettings = PlanSettings(particles=32, iterations=7, rounds=1)  # of a previous plan
     chased: int = 4  # scouts that are followed up
     refined: int = 2
     added: int = 2  # points that refinement adds

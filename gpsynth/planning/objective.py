@@ -120,7 +120,7 @@ class Objective:
         settings, problem, world = self.settings, self.evaluator.problem, self.evaluator.world
         on_path = settings.obstacles == "path"
         gamma = settings.gamma if on_path else 0.0
-        slack = float(np.hypot(*problem.tolerance[world.position])) if len(world.position) else 0.0
+        slack = float(np.linalg.norm(problem.tolerance[world.position[:2]])) if len(world.position) else 0.0
         return Toll(
             limits=readonly(limits * (1.0 + ROUNDING)),
             due=self.budget,

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from applications.rosbot import planner
+from applications.rosbot.following import nearest_time
 from applications.rosbot.guides import direct_guides, guides_along
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.plan_file import plan_document, write_plan
@@ -78,6 +79,17 @@ def test_a_plan_is_taken_up_on_the_way(report):
     assert again.replay.solves
     assert again.evaluations < report.evaluations / 3
     assert again.plan.arrival_time <= report.plan.arrival_time - driven * PERIOD + 1e-9
+
+
+@pytest.mark.parametrize("share", [0.3, 1.0])
+def test_the_time_of_a_robot_beside_its_plan_is_that_of_the_nearest_pose(report, share):
+    t, x = report.plan.trajectory.t, report.plan.trajectory.x
+    here = x[20] + share * (x[21] - x[20])
+    aside = here + np.array([-0.01 * np.sin(here[2]), 0.01 * np.cos(here[2]), 2.0 * np.pi])
+    assert nearest_time(report.plan.trajectory, aside, t[24]) == pytest.approx(
+        t[20] + share * PERIOD, abs=2e-3
+    )
+    assert nearest_time(report.plan.trajectory, x[0], 100.0) == 100.0  # nothing is near that time
 
 
 def test_what_shuts_the_way_of_a_previous_plan_is_driven_around(report):
