@@ -10,10 +10,10 @@ LOCKED := $(VENV)/locked
 READY := $(VENV)/ready
 
 .DEFAULT_GOAL := help
-.PHONY: help setup rosbot test lint bench docs golden cov lock clean
+.PHONY: help setup rosbot test lint bench bench-planning docs golden cov lock clean
 
 help: ## show this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "make %-8s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(READY) ## install the locked dependencies and gpsynth into .venv (once)
 
@@ -31,6 +31,9 @@ lint: $(READY) ## ruff, mypy and the import contracts
 
 bench: $(READY) ## times, each beside a reference measured in the same run
 	$(BIN)/python -m tests.bench
+
+bench-planning: $(READY) ## plans beside those of other planners, one core (pip install -e .[peers] brings them)
+	$(BIN)/python -m tests.bench.plan_peers
 
 docs: $(READY) ## the documentation, into docs/_build/html
 	$(BIN)/python -m sphinx -W --keep-going -q -b html docs docs/_build/html

@@ -12,12 +12,13 @@ from gpsynth.arrays import Floats, Ints, frozen
 from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
-from gpsynth.kernels.layout import Clock, Conditions, Lanes, Toll, World, readonly, sealed
+from gpsynth.kernels.buckets import NONE, buckets
+from gpsynth.kernels.layout import Buckets, Clock, Conditions, Lanes, Toll, World, readonly, sealed
 from gpsynth.kernels.pack import Extent, Frame, Instructions, Loop, frame, pack
 from gpsynth.kernels.tableaus import TABLEAUS
 from gpsynth.law import Law
 from gpsynth.plant import Plant
-from gpsynth.problem import Problem
+from gpsynth.problem import Obstacles, Problem
 from gpsynth.program import Program
 
 MOST_PERIODS = 10_000_000  # of one rollout
@@ -205,13 +206,21 @@ class Evaluator:
         if obstacles is None:
             nowhere = np.empty(0, dtype=np.int32)
             everywhere = np.array([-np.inf, np.inf, -np.inf, np.inf])
-            return sealed(World(nowhere, np.empty((0, 5)), everywhere, float(self.margin)))
-        states = self.problem.plant.state_names
-        circles = np.array(obstacles.circles, dtype=np.float64).reshape(-1, 5)
-        circles[:, 4] += obstacles.radius
-        position = np.array([states.index(name) for name in obstacles.position], dtype=np.int32)
+            nothing, origin = np.empty((0, 0)), np.zeros(3)
+            return sealed(
+                World(
+                    *(nowhere, np.empty((0, 5)), 0, NONE, everywhere, float(self.margin)),
+                    *(np.empty((0, 3)), nothing, origin),
+                )
+            )
+        states, body, field = self.problem.plant.state_names, obstacles.body, obstacles.field
+        names = obstacles.position if np.any(body[:, :2]) else obstacles.position[:2]
         return sealed(
-            World(position, circles, np.array(obstacles.bounds, dtype=np.float64), float(self.margin))
+            World(
+                np.array([states.index(name) for name in names], dtype=np.int32),
+                *(*_sorted_circles(obstacles), obstacles.bounds, float(self.margin), body),
+                *((np.empty((0, 0)), np.zeros(3)) if field is None else (field.squares, field.grid)),
+            )
         )
 
     @property
@@ -296,6 +305,15 @@ def _frame(problem: Problem) -> Frame:
     )
     angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
     return frame(Loop(*map(instructions, parts)), extent, angles)
+
+
+@lru_cache(maxsize=16)
+def _sorted_circles(obstacles: Obstacles) -> tuple[Floats, int, Buckets]:
+    """The circles with those that move first, the number of these, and the buckets of the others."""
+    moves = np.any(obstacles.circles[:, 2:4] != 0.0, axis=1)
+    movers = int(np.count_nonzero(moves))
+    circles = frozen(np.concatenate([obstacles.circles[moves], obstacles.circles[~moves]]))
+    return circles, movers, buckets(circles[movers:])
 
 
 @lru_cache(maxsize=16)

@@ -7,14 +7,13 @@ island merges with the worst, the second best with the second worst.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Generic, TypeVar, cast
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
 import joblib
 from joblib.externals.loky.process_executor import BrokenProcessPool
 
 from gpsynth.errors import OptimizerError
-from gpsynth.hard_starts import StartsCost, harder
 from gpsynth.optimizers import Progress, Result, minimize
 from gpsynth.optimizers.bar import bar
 from gpsynth.runs import Outcome
@@ -23,7 +22,6 @@ from gpsynth.structure_search import Cost, SearchState, StructureSearch
 G = TypeVar("G")
 Callback = Callable[[Progress[SearchState[Any]]], bool | None]
 
-TRIED = 8  # laws of each island, the best, for starts that they miss
 TRIES = 3  # of a level whose worker processes died
 
 
@@ -51,7 +49,6 @@ class Archipelago(Generic[G]):
     level: int  # levels that are done
     islands: tuple[Progress[SearchState[G]] | None, ...]
     history: tuple[tuple[int, float], ...] = ()  # (evaluations, best cost) after each level
-    starts: tuple[int, ...] = ()  # that the next level is searched on, by number; none: all
 
     @property
     def evaluations(self) -> int:
@@ -66,14 +63,13 @@ class Archipelago(Generic[G]):
 
 
 def search_islands(  # noqa: PLR0913 takes what `minimize` takes
-    cost: Cost | StartsCost,
+    cost: Cost,
     strategy: StructureSearch[Any],
     *,
     islands: Islands,
     seed: int,
     budget: int,
     path: tuple[int, ...],
-    sample: int | None = None,
     workers: int = 1,
     progress: bool = False,
     callback: Callback | None = None,
@@ -83,24 +79,23 @@ def search_islands(  # noqa: PLR0913 takes what `minimize` takes
     """The search after all levels, on each of which every island may spend the same share of the budget (evaluations).
 
     Islands run in `workers` processes through joblib, so `joblib.parallel_config(backend="dask")` sends them to a
-    cluster; the same seed gives the same result wherever they run. With a `sample` they see so many starts at a time:
-    the first, then, after each level, those of all that the best laws miss. `checkpoint`, `callback` and the progress
-    bar hear of each level. A run is resumed with the budget it began with. Raises OptimizerError if an island's share
-    is less than one population.
+    cluster; the same seed gives the same result wherever they run. `checkpoint`, `callback` and the progress bar hear
+    of each level. A run is resumed with the budget it began with. Raises OptimizerError if an island's share is less
+    than one population.
     """
     least = strategy.population * (2 * islands.count - 1)
     if budget < least:
         raise OptimizerError(
             f"a budget of {budget} evaluations is too small for {islands.count} islands; at least {least} are needed"
         )
-    now = resume or Archipelago(0, (None,) * islands.count, starts=tuple(range(sample or 0)))
+    now = resume or Archipelago(0, (None,) * islands.count)
     reason = "budget spent"
     with bar(budget, progress) as show:
         while now.level < islands.levels and not reason.startswith("stopped"):
             share = (budget - now.evaluations) // (2 * len(now.islands) - 1)
             tasks = [
                 joblib.delayed(minimize)(
-                    *(_seen(cost, now), strategy),
+                    *(cost, strategy),
                     seed=seed,
                     budget=_spent(before) + share,
                     path=(*path, now.level, number),
@@ -110,8 +105,6 @@ def search_islands(  # noqa: PLR0913 takes what `minimize` takes
             ]
             ranked = sorted(_results(tasks, min(workers, len(tasks))), key=lambda each: each.cost)
             now = _next(strategy, now, ranked)
-            if now.starts and now.level < islands.levels:
-                now = _hardened(strategy, cast(StartsCost, cost), now)
             show(*now.history[-1])
             if checkpoint is not None:
                 checkpoint(now)
@@ -142,31 +135,7 @@ def _next(
         _summed(pair, strategy.merged([each.state for each in pair]), history=()) for pair in pairs
     )
     spent = sum(each.evaluations for each in found)
-    return Archipelago(before.level + 1, islands, (*before.history, (spent, ranked[0].cost)), before.starts)
-
-
-def _seen(cost: Cost | StartsCost, now: Archipelago[Any]) -> Cost:
-    """The cost from the starts that are searched on."""
-    return cast(StartsCost, cost).of(now.starts) if now.starts else cost
-
-
-def _hardened(strategy: StructureSearch[Any], cost: StartsCost, before: Archipelago[Any]) -> Archipelago[Any]:
-    """The same islands on harder starts; what they know is scored anew, which counts as evaluations."""
-    found = [each for each in before.islands if each is not None]
-    best = [each.candidate for island in found for each in island.state.population[:TRIED]]
-    starts = harder(cost, best, before.starts)
-    if starts == before.starts:
-        return before
-    seen = cost.of(starts)
-    islands = tuple(
-        replace(
-            each,
-            state=strategy.rescored(each.state, seen),
-            evaluations=each.evaluations + len(each.state.population) + len(each.state.front),
-        )
-        for each in found
-    )
-    return replace(before, islands=islands, starts=starts)
+    return Archipelago(before.level + 1, islands, (*before.history, (spent, ranked[0].cost)))
 
 
 def _whole(now: Archipelago[Any], best: SearchState[Any]) -> Progress[SearchState[Any]]:

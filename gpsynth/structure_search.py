@@ -60,11 +60,6 @@ class Individual(Generic[G]):
         """Instructions of the program."""
         return self.program.complexity
 
-    @property
-    def candidate(self) -> Candidate[G]:
-        """To evaluate it once more."""
-        return Candidate(self.genome, self.program, self.values)
-
 
 @dataclass(frozen=True, eq=False)
 class SearchState(Generic[G]):
@@ -168,17 +163,6 @@ class StructureSearch(Generic[G]):
         individuals = [individual for state in states for individual in state.population]
         front = [individual for state in states for individual in state.front]
         return self._state(individuals, front, max(state.generation for state in states))
-
-    def rescored(self, state: SearchState[G], cost: Cost) -> SearchState[G]:
-        """The same search under another cost: all that it remembers is scored anew."""
-        known = (*state.population, *state.front)
-        rows = cost([individual.candidate for individual in known])
-        scored = [
-            replace(individual, cases=row, idle=0)
-            for individual, row in zip(known, rows, strict=True)
-            if np.isfinite(row).all()
-        ]
-        return self._state(scored, (), state.generation)
 
     def best(self, state: SearchState[G]) -> tuple[Individual[G] | None, float]:
         """The formula of least cost."""

@@ -147,7 +147,6 @@ def synthesize(
     tuned: Problem | None = None,
     trials: Sequence[Problem] = (),
     islands: Islands | None = None,
-    sample: int | None = None,
     folder: str | os.PathLike[str] | None = None,
     resume: bool = False,
     threads: int = 2,
@@ -156,12 +155,11 @@ def synthesize(
 ) -> SynthesisResult:
     """Search formulas of the problem's features for `budget` evaluations, then tune the front on the whole problem.
 
-    An evaluation is one parameter vector of one formula rolled out from all starts, or from a `sample` of them: search
-    and tuning then see so many at a time, the first, and later those of all that the best laws miss. The search may use
-    a `rough` problem (fewer starts, longer steps). Every law of the front is tuned on `problem` itself, or on the
-    problem `tuned`, with at most `tuning` evaluations, and as many again up to twice while it misses starts beyond its
-    sample. The front that comes back is scored on `problem` and on all `trials` (other starts, shorter steps, another
-    plant), which no search has seen, so that a law that only fits its training loses.
+    An evaluation is one parameter vector of one formula rolled out from all starts. The search may use a `rough`
+    problem (fewer starts, longer steps). Every law of the front is tuned on `problem` itself, or on the problem
+    `tuned`, with at most `tuning` evaluations. The front that comes back is scored on `problem` and on all `trials`
+    (other starts, shorter steps, another plant), which no search has seen, so that a law that only fits its training
+    loses.
 
     The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. An `objective`, a
     function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With a `folder`
@@ -178,8 +176,6 @@ def synthesize(
     check_whole("tuning", tuning, 0)
     _check_parts(encoding, search, rough, tuned, trials)
     _check_islands(islands, search)
-    for each in (rough or problem, tuned or problem):
-        _check_sample(sample, each)
     shape = None if islands is None else (islands, budget)  # shares depend on the budget
     wanted = as_objective(objective)
     strategy: Any = search or StructureSearch(encoding)
@@ -190,19 +186,13 @@ def synthesize(
         "search": strategy,
         "objective": wanted,
         "number of islands or their budget": shape,
-        "sample": sample,
     }
     cost = BatchCost(rough or problem, threads if islands is None else 1, wanted)
-    if islands is None:
-        run: Callable[..., Any] = minimize
-        cost = cost if sample is None else cost.of(range(sample))
-    else:
-        run = partial(search_islands, islands=islands, sample=sample, workers=threads)
     found, reason = run_search(
         cost,
         strategy,
         checkpoint_in(folder, parts, seed),
-        run=run,
+        run=minimize if islands is None else partial(search_islands, islands=islands, workers=threads),
         resume=resume,
         seed=seed,
         budget=budget,
@@ -212,7 +202,7 @@ def synthesize(
     )
     tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
-    tuner = Tuner(tuned or problem, wanted, encoding.space, sample, seed, tuning)
+    tuner = Tuner(Evaluator(tuned or problem), wanted, encoding.space, seed, tuning)
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
         number, individual = numbered
@@ -272,16 +262,6 @@ def _check_islands(islands: object, search: object) -> None:
     if islands is not None and not isinstance(search, StructureSearch | None):
         raise OptimizerError(
             f"islands merge, which a {type(search).__name__} cannot; use a StructureSearch, or no islands"
-        )
-
-
-def _check_sample(sample: int | None, problem: Problem) -> None:
-    if sample is None:
-        return
-    check_whole("sample", sample, 1)
-    if sample > len(problem.starts):
-        raise ProblemError(
-            f"a sample of {sample} starts is more than the {len(problem.starts)} that a problem has"
         )
 
 

@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import matplotlib as mpl
+import numpy as np
 import pytest
 from matplotlib import pyplot
 
@@ -96,8 +97,25 @@ def test_robustness_runs_as_printed(capsys):
     assert blocks("robustness.md", "text") == [capsys.readouterr().out]
 
 
+def test_the_obstacles_of_the_plants_page_run_as_printed():
+    (block,) = [text for text in blocks("plants.md", "python") if "field_of_cells" in text]
+    place: dict[str, object] = {}
+    exec(compile(block, "plants.md", "exec"), place)
+    gap = place["obstacles"].gaps(np.array([[0.0, 0.0, 0.0]]))[
+        0
+    ]  # to the cells from (0.5, -0.5) to (0.55, 0.5)
+    assert 0.34 < gap <= 0.35
+
+
 def test_a_published_matrix_is_varied_as_printed():
     run_as_printed("encodings.md")
+
+
+@pytest.mark.slow
+def test_the_examples_of_the_planner_run_as_printed():
+    place = run_as_printed("rosbot.md")
+    assert {place[name].status for name in ("report", "tour", "later")} == {"planned"}
+    assert place["tour"].certificate.is_clear
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 import os
 import signal
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import joblib
@@ -107,17 +107,6 @@ def test_resuming_after_any_level_changes_nothing(search):
     whole = _found(search, checkpoint=kept.append)
     for level in kept:
         assert _costs(_found(search, resume=level)) == _costs(whole)
-
-
-def test_on_hard_starts_too_it_is_resumed_and_runs_anywhere(search):
-    kept = []
-    settings = {"seed": 1, "budget": BUDGET, "path": (1,), "islands": ISLANDS, "sample": 2}
-    settings |= {"strategy": search, "cost": BatchCost(replace(PROBLEM, horizon=2.0))}
-    whole = search_islands(**settings, checkpoint=kept.append)
-    assert len(kept[0].starts) == 2
-    assert whole.progress.islands[0].evaluations <= BUDGET
-    for level in kept:
-        assert _costs(search_islands(**settings, resume=level)) == _costs(whole)
 
 
 def test_a_callback_ends_it_after_a_level(search):

@@ -10,8 +10,9 @@ from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.law import Law
-from gpsynth.optimizers import PSO, minimize
+from gpsynth.optimizers import PSO, DifferentialEvolution, minimize
 from gpsynth.planning import Objective, PlanSettings, plan
+from gpsynth.planning.literal import plan_literally
 from gpsynth.planning.rounds import rescored
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
@@ -130,6 +131,53 @@ def test_cma_es_refines_as_well(setting):
     refined = plan(*setting, refiner, seed=1, initial=[good.schedule])
     assert refined.is_free
     assert refined.arrival_time <= good.arrival_time
+
+
+def test_differential_evolution_plans_as_well(setting):
+    found = plan(*setting, replace(SMALL, optimizer="shade"), seed=1)
+    assert found.is_free
+    assert found.arrival_time < 4.3
+    assert len(found.particles.costs) == SMALL.particles
+
+
+def test_a_population_is_scored_anew_under_a_tighter_budget(setting):
+    settings = replace(PlanSettings.paper(2, particles=16), obstacles="path")
+    loose, tight = (objective(setting, settings, budget) for budget in (12.0, 6.0))
+    lower, upper = np.tile([-1.0, -3.0], 2), np.tile([5.0, 3.0], 2)
+    found = minimize(loose, DifferentialEvolution(lower, upper, size=16), seed=1, budget=64)
+    start = rescored(found, tight)
+    assert np.array_equal(start.state.costs, tight(found.state.x))
+    assert not np.array_equal(start.state.costs, found.state.costs)
+    assert start.evaluations == 64 + 16
+
+
+def test_algorithm_1_taken_literally_scores_one_candidate_after_the_other(setting):
+    """The same as a loop over single candidates that lowers T+ whenever one arrives sooner."""
+    settings = PlanSettings.paper(2, particles=16)
+    swarm = PSO.seed(np.tile([-1.0, -3.0], 2), np.tile([5.0, 3.0], 2), size=16)
+    now, spent, history, best = objective(setting, settings, 12.0), 0, [(0, 12.0)], (np.inf, None)
+
+    def one_by_one(vectors):
+        nonlocal now, spent, best
+        costs = np.empty(len(vectors))
+        for index, vector in enumerate(vectors):
+            costs[index] = now(vector[np.newaxis])[0]
+            best = min(best, (costs[index], now.schedule(vector)), key=lambda pair: pair[0])
+            used = now.rollouts(*now.schedules(vector[np.newaxis])).arrival[0, 0]
+            spent += 1
+            if used < now.budget:
+                now = replace(now, budget=float(used))
+                history.append((spent, used))
+        return costs
+
+    minimize(one_by_one, swarm, seed=3, path=(0,), budget=320)
+    found = plan_literally(objective(setting, settings, 12.0), swarm, seed=3, evaluations=320)
+    assert len(history) > 3
+    assert found.history == tuple(history)
+    assert found.budget == now.budget
+    assert found.cost == best[0]
+    assert np.array_equal(found.schedule.points, best[1].points)
+    assert np.array_equal(found.schedule.dwell, best[1].dwell)
 
 
 def test_the_paper_cost_is_equation_17(setting):

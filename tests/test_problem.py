@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gpsynth.draws import Draws
+from gpsynth.distance_field import field_of_cells
 from gpsynth.errors import ProblemError, TracingError
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
@@ -129,15 +129,6 @@ def test_replace_keeps_what_is_not_replaced():
     assert changed.starts.shape == (1, 3)
 
 
-def test_a_problem_from_some_of_its_starts_has_their_draws():
-    draws = Draws(delay=[0.0, 0.1, 0.2])
-    whole = problem(starts=[*STARTS, [0.0, 0.0, 1.0]], draws=draws)
-    some = whole.of([2, 0])
-    assert np.array_equal(some.starts, whole.starts[[2, 0]])
-    assert some.draws.delay.tolist() == [0.2, 0.0]
-    assert problem().of([0]).draws is None
-
-
 def test_replacing_the_tolerance_moves_the_default_arrival():
     row = np.array([[0.1, 0.0, 0.0, 0.0, 0.0, 0.0]])
     assert problem().arrival(row).item() == 1.0
@@ -244,7 +235,7 @@ WRONG_OBSTACLES = {
     "bounds_nan": ({"bounds": [0.0, NAN, 0.0, 1.0]}, "bounds holds NaN"),
     "position_same": ({"position": ("x", "x")}, "position names two different states"),
     "position_one": ({"position": ["x"]}, "position names two different states"),
-    "position_three": ({"position": ("x", "y", "theta")}, "position names two different states"),
+    "position_four": ({"position": ("x", "y", "theta", "t")}, "position names two different states"),
     "position_text": ({"position": "xy"}, "position names two different states"),
 }
 
@@ -284,3 +275,39 @@ def test_an_unknown_position_is_named():
         ProblemError, match="position 'z' is no state of the plant; its states are x, y, theta"
     ):
         problem(obstacles=Obstacles(position=("x", "z")))
+
+
+def test_a_start_in_the_way_of_a_footprint_or_in_a_field_is_an_error():
+    body, cells = np.array([[0.5, 0.0, 0.1]]), np.zeros((9, 9), dtype=bool)
+    cells[4, 4] = True
+    field = field_of_cells(cells, (-0.45, -0.45), 0.1)
+    turned = {"position": ("x", "y", "theta"), "footprint": body}
+    assert Obstacles(**turned).gaps(np.array([[0.0, 0.0, 0.0]])).tolist() == [np.inf]
+    ahead = Obstacles([[0.0, 0.7, 0.0, 0.0, 0.15]], **turned)
+    found = ahead.gaps(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.5 * np.pi]]))
+    assert found == pytest.approx([np.hypot(0.5, 0.7) - 0.25, -0.05])
+    assert Obstacles(field=field, radius=0.1).gaps(np.array([[0.35, 0.05]])) == pytest.approx([0.2], abs=0.02)
+    with pytest.raises(
+        ProblemError, match=r"start 0 at \(0.0, 0.0\) is inside what the distance field is of"
+    ):
+        posed(Obstacles(field=field, radius=0.3))
+    with pytest.raises(ProblemError, match=r"start 0 at .* is inside obstacle 0, .* grown by its footprint"):
+        posed(Obstacles([[0.5, 0.0, 0.0, 0.0, 0.1]], **turned))
+    for wrong, sentence in (
+        ({"footprint": body}, "position must name its heading"),
+        ({"footprint": body, "radius": 0.1}, "a robot has a radius or a footprint"),
+        ({"footprint": -body}, "a footprint has circles of radius at least 0"),
+        ({"field": 3}, "the field must be a DistanceField or None, got 3"),
+    ):
+        with pytest.raises(ProblemError, match=sentence):
+            Obstacles(**wrong)
+
+
+def posed(obstacles: Obstacles) -> Problem:
+    plant = Plant(
+        lambda x, u: (u.v * np.cos(x.theta), u.v * np.sin(x.theta), u.v),
+        states={"x": "m", "y": "m", "theta": "rad"},
+        controls={"v": ("m/s", -1.0, 1.0)},
+        angles=("theta",),
+    )
+    return Problem(plant, np.zeros(3), np.ones(3), tolerance=0.1, obstacles=obstacles)

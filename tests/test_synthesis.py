@@ -116,19 +116,6 @@ def test_a_front_without_laws_is_a_sentence_when_its_law_is_wanted() -> None:
     assert repr(nothing) == "<SynthesisResult of 0 laws>"
 
 
-def test_a_search_sees_a_sample_of_the_starts() -> None:
-    whole = quadratic()
-    first = whole.of(range(2))
-    settings = {"seed": 2, "budget": 450, "tuning": 0}
-    sampled, alone = (
-        synthesize(each, encoding(whole), **settings, **more)
-        for each, more in ((whole, {"sample": 2}), (first, {}))
-    )
-    assert sampled.history == alone.history
-    with pytest.raises(ProblemError, match="a sample of 99 starts is more than the"):
-        synthesize(whole, encoding(whole), sample=99, **settings)
-
-
 def test_threads_do_not_change_the_result() -> None:
     one, two = synthesized(seed=3, threads=1), synthesized(seed=3, threads=2)
     assert one.law.hash == two.law.hash

@@ -1,10 +1,13 @@
-"""Numbers are tuned on a sample of the starts, and then on what the law misses."""
+"""The numbers of a law become those that cost least on the tuner's problem."""
 
 import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
 
 import gpsynth as gs
 from gpsynth.batch_cost import BatchCost
 from gpsynth.builder import Builder
+from gpsynth.evaluate import Evaluator
 from gpsynth.objective import PROBLEMS_OWN
 from gpsynth.structure_search import Candidate, Individual
 from gpsynth.tuning import Tuner
@@ -15,48 +18,36 @@ CART = gs.Plant(
     controls={"speed": ("m/s", -1.0, 1.0)},
     name="cart",
 )
+PROBLEM = gs.Problem(
+    CART,
+    [[-0.5], [0.2]],
+    [0.0],
+    tolerance=0.1,
+    horizon=10.0,
+    running=lambda x, u, goal: x.place**2 + u.speed**2,
+    stop=False,
+)
 SPACE = gs.ParameterSpace(1, 0.0, 4.0)
 
 
-def _law():
-    """error (p1 - |error|): it runs away from starts beyond p1, of which those near the goal know nothing."""
+def _gain():
+    """The law speed = p1 error."""
     builder = Builder(("error_place",), ("p1",))
-    error, bound = builder.inputs[0], builder.parameters[0]
-    pull = builder.apply("sub", bound, builder.apply("abs", error))
-    return builder.build([builder.apply("mul", error, pull)], ("speed",))
+    return builder.build([builder.apply("mul", builder.inputs[0], builder.parameters[0])], ("speed",))
 
 
-LAW = _law()
-
-
-def _problem(starts):
-    return gs.Problem(
-        CART,
-        np.reshape(starts, (-1, 1)),
-        [0.0],
-        tolerance=0.1,
-        horizon=20.0,
-        stop=False,
-        running=lambda x, u, goal: x.place**2 + u.speed**2,
-    )
-
-
-def _individual(problem, value):
+def _individual(value):
     values = np.array([value])
-    cases = BatchCost(problem)([Candidate(None, LAW, values)])[0]
-    return Individual(None, LAW, values, cases, 0)
+    cases = BatchCost(PROBLEM)([Candidate(None, _gain(), values)])[0]
+    return Individual(None, _gain(), values, cases, 0)
 
 
-def _tuned(problem, sample, budget=100):
-    law = _individual(problem, 1.0)
-    return Tuner(problem, PROBLEMS_OWN, SPACE, sample, 1, budget)(law, 0)[0]
+def test_the_gain_is_the_one_that_a_scalar_search_finds() -> None:
+    tuned = Tuner(Evaluator(PROBLEM), PROBLEMS_OWN, SPACE, seed=1, budget=300)(_individual(3.0), 0)
+    least = minimize_scalar(lambda gain: _individual(gain).cost, bounds=(0.0, 4.0), method="bounded")
+    assert tuned[0] == pytest.approx(least.x, abs=1e-4)
 
 
-def test_a_law_is_tuned_on_the_starts_of_its_sample_and_then_on_those_it_misses() -> None:
-    near, far = [0.1, 0.2] * 8, [1.2, 1.3] * 8
-    few = _problem(near)
-    many = _problem([*near, *far])
-    assert _tuned(few, None) < 1.3  # it runs away from starts beyond
-    value = _tuned(many, len(near))
-    assert value > 1.3
-    assert not BatchCost(many).missed([_individual(many, value).candidate]).any()
+def test_without_a_budget_the_numbers_stay() -> None:
+    law = _individual(3.0)
+    assert Tuner(Evaluator(PROBLEM), PROBLEMS_OWN, SPACE, seed=1, budget=0)(law, 0) is law.values

@@ -4,6 +4,7 @@ import sys
 from collections.abc import Sequence
 from math import inf
 from pathlib import Path
+from types import MappingProxyType
 
 import click
 
@@ -22,7 +23,7 @@ from gpsynth.cli import (
 
 PATH = click.Path(path_type=Path)
 SEED = 3  # of the law that comes along
-NO_PLAN = 3  # exit code where the goal is unreachable or no plan was found
+EXIT_CODES = MappingProxyType({"planned": 0, "unreachable": 3, "not_found": 4})
 NOT_THERE = 4  # exit code of a drive that did not come to its goal without a collision
 resume_option = click.option(
     "--resume", is_flag=True, help="Go on with the synthesis in the run folder, other options being the same."
@@ -56,7 +57,7 @@ def demo(out: Path, short: bool, resume: bool, seed: int, threads: int) -> int:
     with status(LOADING):
         from applications.rosbot.demo import run_demo
     plans = run_demo(out, seed=seed, short=short, resume=resume, threads=threads)
-    return 0 if all(each.is_found for each in plans) else NO_PLAN
+    return max(EXIT_CODES[each.status] for each in plans)
 
 
 @cli.command()
@@ -89,6 +90,13 @@ def synthesize(
 @click.option("--out", type=PATH, required=True, help="Folder for plan.json and its picture.")
 @click.option("--law", "law_file", metavar="LAW.json", type=PATH, help="[default: the law that comes along]")
 @click.option(
+    "--via",
+    type=(float, float, float),
+    multiple=True,
+    metavar="X Y TOLERANCE",
+    help="A place (m) to pass on the way; repeatable, in their order.",
+)
+@click.option(
     "--deadline",
     type=click.FloatRange(min=0.0, min_open=True),
     help="Seconds by the clock, after which the best plan so far is taken: not the same one every time.",
@@ -96,12 +104,18 @@ def synthesize(
 @seed_option()
 @threads_option
 def plan(
-    scenario_file: Path, out: Path, law_file: Path | None, deadline: float | None, seed: int, threads: int
+    scenario_file: Path,
+    out: Path,
+    law_file: Path | None,
+    via: tuple[tuple[float, float, float], ...],
+    deadline: float | None,
+    seed: int,
+    threads: int,
 ) -> int:
-    """Stage 2: plan for a scenario. Ctrl-C ends the search, and what it has found is written.
+    """Stage 2: plan for a scenario.
 
-    Exit code 0 with a plan, 3 if the goal is unreachable or no plan was found, 2 if the input is wrong; plan.json
-    says which and why.
+    Exit code 0 with a plan, 3 if the goal is proved to be unreachable, 4 if no plan was found, 2 if the input is wrong;
+    plan.json says why. Ctrl-C ends the search and keeps the best plan so far: exit code 130.
     """
     with status(LOADING):
         from applications.rosbot.planner import Effort
@@ -109,13 +123,18 @@ def plan(
         from applications.rosbot.show import print_plans, read_plan
         from applications.rosbot.stabilizer import default_law
         from applications.rosbot.stages import load_steering_law, run_plan
-    name = read_scenario(scenario_file).name  # and every complaint about it before anything is written
+        from applications.rosbot.through import check_via
+    scenario = read_scenario(scenario_file)  # and every complaint about it before anything is written
+    if via:
+        check_via(scenario, via)
     law = load_steering_law(law_file) if law_file else default_law()
     effort = Effort(deadline=deadline or inf)
-    path = run_plan(begin(out, seed), scenario_file, law, seed=seed, effort=effort, threads=threads)
+    path = run_plan(begin(out, seed), scenario_file, law, seed=seed, effort=effort, threads=threads, via=via)
     made = read_plan(path)
-    print_plans([(name, made)])
-    return 0 if made.is_found else NO_PLAN
+    print_plans([(scenario.name, made)])
+    if made.ended == "interrupted":
+        raise KeyboardInterrupt
+    return EXIT_CODES[made.status]
 
 
 @cli.command()

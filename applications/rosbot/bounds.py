@@ -3,6 +3,7 @@
 import numpy as np
 
 from applications.rosbot.guides import top_speed
+from applications.rosbot.model import FAMILY
 from applications.rosbot.reeds_shepp import distance
 from applications.rosbot.replay import SLACK
 from applications.rosbot.routes import routes
@@ -14,11 +15,12 @@ MOST_CELLS = 2_000
 OCTANTS = np.stack(np.meshgrid([-1.0, 1.0], [-1.0, 1.0], [-1.0, 1.0]), axis=-1).reshape(-1, 3)
 
 
-def lower_bound(scenario: Scenario) -> float:
+def lower_bound(scenario: Scenario, *, enough: float = np.inf) -> float:
     """The greatest of four lower bounds on the arrival time (s); 0 if the start is within the tolerance.
 
     The straight line, the turn, the shortest route around the obstacles where they rest and leave the whole tolerance
-    free, and the Reeds-Shepp path to the nearest pose of the tolerance, all at top speed.
+    free, and the Reeds-Shepp path to the nearest pose of the tolerance, all at top speed. Once a bound is above
+    `enough` (s), those that take longer are not looked for.
     """
     position, heading = _tolerance(scenario)
     radius = _radius(scenario)
@@ -27,12 +29,15 @@ def lower_bound(scenario: Scenario) -> float:
     least = max(np.hypot(dx, dy) - position, radius * (turn - heading))
     if least <= 0.0:
         return 0.0
-    lengths = [least, _reeds_shepp(scenario, least)]
+    speed, longest = top_speed(scenario), least
     discs = scenario.discs
     gaps = np.hypot(*(discs[:, :2] - scenario.goal[:2]).T) - discs[:, 2]
-    if scenario.is_static and gaps.min(initial=np.inf) > position:
-        lengths += [route.length - position for route in routes(scenario, count=1)]
-    return float(max(lengths)) / top_speed(scenario)
+    static = scenario.room is None and scenario.is_static
+    if longest <= enough * speed and static and gaps.min(initial=np.inf) > position:
+        longest = max([longest, *(route.length - position for route in routes(scenario, count=1))])
+    if longest <= enough * speed:
+        longest = max(longest, _reeds_shepp(scenario, least))
+    return float(longest) / speed
 
 
 def _reeds_shepp(scenario: Scenario, least: float) -> float:
@@ -70,4 +75,6 @@ def _tolerance(scenario: Scenario) -> tuple[float, float]:
 
 
 def _radius(scenario: Scenario) -> float:
-    return top_speed(scenario) / max(map(abs, scenario.turn_limits))
+    """A radius (m) that no robot turns more sharply than at top speed."""
+    gain = FAMILY["k_omega"][3] if scenario.model == "dynamic_unicycle" else 1.0
+    return max(top_speed(scenario) / (gain * max(map(abs, scenario.turn_limits))), scenario.turning_radius)

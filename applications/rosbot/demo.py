@@ -50,7 +50,11 @@ def run_demo(out: Path, *, seed: int, short: bool, resume: bool, threads: int) -
             threads=threads,
         )
         plans.append((scenario_name.removesuffix(".json"), read_plan(path)))
+        if plans[-1][1].ended == "interrupted":
+            break
     print_plans(plans)
+    if plans[-1][1].ended == "interrupted":
+        raise KeyboardInterrupt
     (run.folder / FILE).unlink(missing_ok=True)
     click.echo(f"everything is in {out}")
     return [plan for _, plan in plans]

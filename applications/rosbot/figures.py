@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from applications.rosbot.footprint import outer_radius, placed
+from applications.rosbot.room_figure import draw_room
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 from gpsynth.files import write_bytes
@@ -59,6 +61,8 @@ def draw_path(axes: "Axes", scenario: Scenario, trajectory: Floats, waypoints: F
     _draw_robot(axes, scenario, trajectory)
     _draw_waypoints(axes, scenario, waypoints)
     _draw_obstacles(axes, scenario, trajectory[-1, 0])
+    if scenario.room is not None:
+        draw_room(axes, scenario.room)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.1)
     axes.set_xlabel("$x$ (m)")
@@ -90,9 +94,12 @@ def _draw_robot(axes: "Axes", scenario: Scenario, trajectory: Floats) -> None:
     instants = np.linspace(0.0, trajectory[-1, 0], FOOTPRINTS)
     poses = trajectory[np.searchsorted(trajectory[:, 0], instants).clip(max=len(trajectory) - 1), 1:]
     for pose in poses:
-        axes.add_patch(Circle(pose[:2], scenario.radius, facecolor=SKY, alpha=0.25, linewidth=0.0, zorder=1))
-        axes.add_patch(Circle(pose[:2], scenario.radius, fill=False, edgecolor=SKY, linewidth=0.8, zorder=3))
-        _draw_heading(axes, pose, scenario.radius, SKY)
+        for center, radius in zip(
+            placed(scenario.body, pose[np.newaxis])[0], scenario.body[:, 2], strict=True
+        ):
+            axes.add_patch(Circle(center, radius, facecolor=SKY, alpha=0.25, linewidth=0.0, zorder=1))
+            axes.add_patch(Circle(center, radius, fill=False, edgecolor=SKY, linewidth=0.8, zorder=3))
+        _draw_heading(axes, pose, outer_radius(scenario.body), SKY)
     axes.plot([], [], "o", color="none", markeredgecolor=SKY, markerfacecolor=PALER, label="robot")
 
 
@@ -102,7 +109,7 @@ def _draw_waypoints(axes: "Axes", scenario: Scenario, waypoints: Floats) -> None
         return
     axes.plot(*waypoints[:, :2].T, "o", color=BLUE, markersize=4.0, label="equilibrium points", zorder=6)
     for number, pose in enumerate(waypoints, start=1):
-        _draw_heading(axes, pose, 1.5 * scenario.radius, BLUE)
+        _draw_heading(axes, pose, 1.5 * outer_radius(scenario.body), BLUE)
         behind = (
             -7.0 * np.cos(pose[2]),
             -7.0 * np.sin(pose[2]),
@@ -123,7 +130,7 @@ def _draw_obstacles(axes: "Axes", scenario: Scenario, end: float) -> None:
 
     for x, y, vx, vy, radius in scenario.circles:
         place, later = (x, y), (x + vx * end, y + vy * end)
-        grown = radius + scenario.radius
+        grown = radius + outer_radius(scenario.body)
         axes.add_patch(Circle(place, radius, facecolor=PALE, edgecolor=BLACK, linewidth=0.8, zorder=2))
         axes.add_patch(
             Circle(place, grown, fill=False, edgecolor=GRAY, linestyle=":", linewidth=0.9, zorder=2)

@@ -7,9 +7,10 @@ import numpy as np
 
 from applications.rosbot.seeds import nearby
 from applications.rosbot.swarms import Found
+from applications.rosbot.vehicles import pose_plans
 from gpsynth.arrays import Floats
 from gpsynth.law import Law
-from gpsynth.planning import Plan, PlanSettings, plans
+from gpsynth.planning import Plan, PlanSettings
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule, Schedules
 from gpsynth.seeds import stream
@@ -39,7 +40,7 @@ def follow(
     others = nearby(left[0], settings.particles, NEARNESS, stream(seed, FOLLOW, 0))
     initial = Schedules.joined([Schedules.of(left), others.take(np.arange(len(left), settings.particles))])
     remaining = max(previous.arrival_time - there, problem.period)
-    *_, plan = plans(
+    *_, plan = pose_plans(
         problem,
         law,
         replace(settings, points=count),

@@ -124,7 +124,7 @@ def _combined(
 def _radius(scenario: Scenario) -> float:
     """The radius (m) of a turn at top speed that is possible to both sides, if there is one."""
     right, left = map(abs, scenario.turn_limits)
-    return top_speed(scenario) / (min(right, left) or max(right, left))
+    return max(top_speed(scenario) / (min(right, left) or max(right, left)), scenario.turning_radius)
 
 
 def _pace(scenario: Scenario, sense: float) -> float:
@@ -149,7 +149,10 @@ def _blockages(scenario: Scenario, samples: Samples) -> Floats:
     room = np.minimum(places - low, high - places).min(axis=1)
     discs = scenario.discs
     gaps = np.hypot(*(places[:, None] - discs[:, :2]).transpose(2, 0, 1)) - discs[:, 2]
-    depth = -np.minimum(room, gaps.min(axis=1, initial=np.inf))
+    room = np.minimum(room, gaps.min(axis=1, initial=np.inf))
+    if scenario.field is not None:
+        room = np.minimum(room, scenario.field.at(places) - scenario.radius)
+    depth = -room
     counted = np.concatenate([[0.0], np.cumsum(np.where(depth > 0.0, 0.1 + depth, 0.0))])
     blocked: Floats = SPACING * np.diff(counted[samples.bounds])
     return blocked

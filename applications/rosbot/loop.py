@@ -17,6 +17,7 @@ from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Sensor, scene_ahead
 from applications.rosbot.simulated_robot import Flaws, SimulatedRobot
 from gpsynth.arrays import Floats
+from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.schedule import Schedule
 from gpsynth.seeds import stream
@@ -70,9 +71,12 @@ def drive_scenario(
     """Drive a simulated robot to the goal and plan on in every cycle; the same seed gives the same run.
 
     The first course is the schedule, or to stand still; without `settings` nothing is planned and it is followed to
-    its end. Raises ScenarioError if more circles move than the sensor can tell apart.
+    its end. Raises ScenarioError if more circles move than the sensor can tell apart, or the
+    robot is no unicycle.
     """
     sensor.check(scenario)
+    if scenario.model != "unicycle":
+        raise ScenarioError(f"the robot is a {scenario.model}; the loop drives a unicycle")
     law = law.with_limits(*zip(scenario.speed_limits, scenario.turn_limits, strict=True))
     robot = SimulatedRobot.drawn(flaws, stream(seed, ROBOT))
     first = Course.of(schedule or standing(scenario.start), settings.points if settings else 1)

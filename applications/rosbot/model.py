@@ -57,6 +57,27 @@ def dynamic_unicycle(
     return Plant(_dynamic_unicycle, states, controls, parameters=FAMILY, angles=("theta",), name=name)
 
 
+def car(
+    v: tuple[float, float] = (-0.5, 0.5),
+    omega: tuple[float, float] = (-0.5, 0.5),
+    *,
+    turning_radius: float,
+    name: str = "car",
+) -> Plant:
+    """A car as a unicycle whose front wheels turn so far and no farther: |omega| <= |v| / turning_radius (m).
+
+    v and the steering angle arctan(wheelbase omega / v) are held over a control period, so a turn asked for that is too
+    sharp becomes the sharpest there is.
+    """
+
+    def rates(x: Pose, u: Pose) -> tuple[Any, ...]:
+        sharpest = np.abs(u.v) / turning_radius
+        return u.v * np.cos(x.theta), u.v * np.sin(x.theta), np.clip(u.omega, -sharpest, sharpest)
+
+    controls = {"v": ("m/s", *v), "omega": ("rad/s", *omega)}
+    return Plant(rates, states=STATES, controls=controls, angles=("theta",), name=name)
+
+
 def wheel_coupled(limit: float = 10.0) -> Plant:
     """The reading under which the paper's times are possible: two wheel commands within ±limit.
 

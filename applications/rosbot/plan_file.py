@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from applications.rosbot.certificate import Certificate
 from applications.rosbot.planner import PERIOD, PlanReport
 from gpsynth.arrays import Floats
 from gpsynth.files import write_json
@@ -21,15 +22,18 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
     """The report as a JSON-ready dictionary; without a plan its fields are null or empty.
 
     `controls` hold v (m/s) and omega (rad/s), each row for one `control_period` (s). `arrival_time` and `clearance` (m,
-    null without obstacles) are those of the replay in steps of 1 ms; `trajectory` is that replay once a period.
+    null without obstacles) are those of the replay in steps of 1 ms; `trajectory` is that replay once a period;
+    `certificate` is what is proved between its samples.
     """
     document: dict[str, Any] = {
         "format": FORMAT,
         "status": report.status,
         "reason": report.reason,
         "ended": report.ended,
+        "via": [list(place) for place in report.via],
         "arrival_time": None,
         "clearance": None,
+        "certificate": None,
         "lower_bound": report.lower_bound,
         "planning_time": report.planning_time,
         "evaluations": report.evaluations,
@@ -44,13 +48,27 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
         schedule, check = report.plan.schedule, report.replay
         document |= {
             "arrival_time": check.arrival_time,
-            "clearance": check.clearance if np.isfinite(check.clearance) else None,
+            "clearance": _finite(check.clearance),
+            "certificate": _proved(report.certificate) if report.certificate else None,
             "law": {"hash": report.law.hash, "formulas": list(report.law.formulas())},
-            "controls": report.plan.trajectory.u.tolist(),
+            "controls": report.controls.tolist(),
             "trajectory": once_a_period(check.trajectory).tolist(),
             "schedule": {"points": schedule.points.tolist(), "dwell": schedule.dwell.tolist()},
         }
     return document
+
+
+def _proved(certificate: Certificate) -> dict[str, Any]:
+    return {
+        "clearance": _finite(certificate.clearance),
+        "room": _finite(certificate.room),
+        "obstacle": certificate.obstacle,
+        "time": certificate.time,
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
 
 
 def once_a_period(trajectory: Floats) -> Floats:

@@ -1,24 +1,30 @@
 """Plans for scenarios: what can be reached is searched for, and what is found is replayed by another simulator."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from applications.rosbot.bounds import lower_bound
+from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.following import follow
+from applications.rosbot.guides import top_speed
 from applications.rosbot.model import reached
-from applications.rosbot.reachability import reachability
+from applications.rosbot.reachability import Reachability, reachability
 from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort, Found, Search
+from applications.rosbot.vehicles import law_for, plant_of, steered, step_of, widened
+from gpsynth.arrays import Floats
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Particles, Plan
+from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
 from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import Trajectory
@@ -26,8 +32,19 @@ from gpsynth.simulation import Trajectory
 __all__ = ["PERIOD", "Callback", "Effort", "PlanReport", "plan_scenario", "problem_of"]
 
 PERIOD = 0.05  # s of the control: 2.5 cm at 0.5 m/s; twice as long costs time at every switch, half as long computing
-Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
 INSIDE = (0.001, 0.002)  # m, rad: how far within the tolerance a plan arrives, so that no rounding undoes it
+ROUNDING = 1e-9  # share of a bound that its arithmetic may be off by
+
+Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
+WHEN: Mapping[Ended, str] = MappingProxyType(
+    {
+        "complete": "",
+        "callback": ", when the search was ended",
+        "rollouts": ", all that were allowed",
+        "deadline": ", when the deadline came",
+        "interrupted": ", when the search was interrupted",
+    }
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,13 +60,20 @@ class PlanReport:
     plan: Plan | None = None
     law: Law | None = None
     replay: Replay | None = None  # by the simulator that shares nothing with the planner's
+    certificate: Certificate | None = None  # for the path between its samples
     history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
     ended: Ended = "complete"
+    via: tuple[tuple[float, ...], ...] = ()  # places that are passed on the way: x, y and tolerance in m
 
     @cached_property
     def lower_bound(self) -> float:
         """A time (s) below which no plan can be; it takes longer to find than a first plan, so only when asked for."""
         return lower_bound(self.scenario)
+
+    @property
+    def controls(self) -> Floats:
+        """v and omega (m, 2) in every control period of the plan."""
+        return np.empty((0, 2)) if self.plan is None else steered(self.scenario, self.plan.trajectory.u)
 
     @property
     def ratio(self) -> float:
@@ -84,14 +108,16 @@ def plan_scenario(
     watch = _Watch(time.perf_counter(), effort, callback)
     problems = _problems(scenario, laws)
     at_rest = replay(scenario, np.empty((0, 2)), PERIOD)
-    if at_rest.solves:
-        return watch.stamped(_arrived(scenario, problems[0][1], at_rest, seed))
+    stay = certify(scenario, np.empty((0, 2)), PERIOD)
+    if at_rest.solves and stay.is_clear:
+        arrived = _arrived(scenario, problems[0][1], at_rest, seed)
+        return watch.stamped(replace(arrived, certificate=stay))
     report = PlanReport("not_found", "", 0.0, 0, scenario, seed)
     if previous is not None and previous.plan is not None and previous.law is not None:
         report = watch.improved(report, _followed(report, previous.plan, previous.law, elapsed, effort))
         if report.status == "planned" or report.ended != "complete":
             return report
-    verdict = reachability(scenario)
+    verdict = _verdict(scenario)
     if verdict.status == "unreachable":
         return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
     ways = routes(scenario, margin=effort.scouts.margin)
@@ -127,8 +153,9 @@ class _Watch:
         return self.stamped(report)
 
     def stamped(self, report: PlanReport) -> PlanReport:
-        """The report with the time that it took."""
-        return replace(report, planning_time=time.perf_counter() - self.began)
+        """The report with the time that it took and, without a plan, the reason."""
+        reason = _not_found(report) if report.status == "not_found" else report.reason
+        return replace(report, reason=reason, planning_time=time.perf_counter() - self.began)
 
     def _ended(self, report: PlanReport) -> Ended:
         if self.callback is not None and self.callback(self.stamped(report)):
@@ -140,28 +167,38 @@ class _Watch:
 
 def problem_of(scenario: Scenario, law: Law) -> Problem:
     """The scenario as a problem for a law under its limits: least time into the tolerance, a little within its edge."""
+    tolerances = scenario.position_tolerance, scenario.heading_tolerance
     return replace(
-        _like(law, scenario.position_tolerance, scenario.heading_tolerance),
-        starts=scenario.start,
-        goal=scenario.goal,
+        _like(law, *tolerances, step_of(scenario, PERIOD)),
+        starts=widened(scenario.start, law.plant),
+        goal=widened(scenario.goal, law.plant),
         horizon=max(PERIOD, scenario.time_limit - PERIOD),
-        obstacles=Obstacles(scenario.circles, scenario.bounds, scenario.radius),
+        obstacles=_obstacles(scenario),
     )
 
 
 @lru_cache(maxsize=32)
-def _like(law: Law, position: float, heading: float) -> Problem:
+def _like(law: Law, position: float, heading: float, step: float) -> Problem:
     """A problem with the programs of all problems for this law and tolerance (m, rad): to trace them takes a while."""
     shrunk = max(0.5 * position, position - INSIDE[0]), max(0.5 * heading, heading - INSIDE[1])
+    nowhere = widened(np.zeros(3), law.plant)
     return Problem(
         law.plant,
-        np.zeros(3),
-        np.zeros(3),
-        tolerance=[shrunk[0], shrunk[0], shrunk[1]],
+        nowhere,
+        nowhere,
+        tolerance=[shrunk[0], shrunk[0], shrunk[1], *np.ones(len(nowhere) - 3)],
         period=PERIOD,
+        step=step,
         features=law.features,
         reached=reached(*shrunk),
     )
+
+
+def _obstacles(scenario: Scenario) -> Obstacles:
+    if scenario.is_round:
+        return Obstacles(scenario.circles, scenario.bounds, scenario.radius, field=scenario.field)
+    position = ("x", "y", "theta")
+    return Obstacles(scenario.circles, scenario.bounds, 0.0, position, scenario.body, scenario.field)
 
 
 def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, Law]]:
@@ -173,14 +210,29 @@ def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, La
             raise ScenarioError(
                 f"the law steers {', '.join(law.plant.control_names)}; a scenario needs v, omega"
             )
-    adapted = [_limited(law, scenario.speed_limits, scenario.turn_limits) for law in laws]
+    plant = plant_of(scenario)
+    adapted = [_carried(law, plant) for law in laws]
     return [(problem_of(scenario, law), law) for law in adapted]
 
 
+def _verdict(scenario: Scenario) -> Reachability:
+    """Whether the goal can be reached, and where time is scarce, whether any plan is as fast as the time limit asks."""
+    verdict, (dx, dy, _) = reachability(scenario), scenario.goal - scenario.start
+    straight = np.hypot(dx, dy) / top_speed(scenario) + np.pi / max(map(abs, scenario.turn_limits))
+    if verdict.status == "unreachable" or scenario.time_limit >= 2.0 * straight:
+        return verdict
+    least = lower_bound(scenario, enough=scenario.time_limit * (1.0 + ROUNDING))
+    if least <= scenario.time_limit * (1.0 + ROUNDING):
+        return verdict
+    return Reachability(
+        "unreachable",
+        f"too late: no plan arrives before {least:.4g} s, and the time limit is {scenario.time_limit:g} s",
+    )
+
+
 @lru_cache(maxsize=32)
-def _limited(law: Law, speed: tuple[float, float], turn: tuple[float, float]) -> Law:
-    low, high = zip(speed, turn, strict=True)
-    return law.with_limits(low, high)
+def _carried(law: Law, plant: Plant) -> Law:
+    return law_for(law, plant)
 
 
 def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanReport:
@@ -188,9 +240,9 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
     stay = Trajectory(
         plant=law.plant,
         t=np.zeros(1),
-        x=scenario.start[np.newaxis],
+        x=widened(scenario.start[np.newaxis], law.plant),
         u=np.empty((0, 2)),
-        target=scenario.goal[np.newaxis],
+        target=widened(scenario.goal[np.newaxis], law.plant),
         arrival=0.0,
         cost=0.0,
         clearance=at_rest.clearance,
@@ -201,6 +253,7 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
         arrival_time=0.0,
         clearance=at_rest.clearance,
         is_admissible=True,
+        value=0.0,
         cost=0.0,
         evaluations=0,
         history=(),
@@ -220,23 +273,29 @@ def _followed(
 
 
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:
-    """The report with what was found, if it is faster and the other simulator confirms it."""
+    """The report with what was found, if that is faster, confirmed by the other simulator and cleared."""
     scenario, plan = report.scenario, found.plan
-    if plan.is_free and (report.plan is None or plan.arrival_time < report.plan.arrival_time):
-        check = replay(scenario, plan.trajectory.u, PERIOD)
-        if check.solves:
-            return replace(
-                report,
-                status="planned",
-                reason="",
-                plan=plan,
-                law=found.law,
-                replay=check,
-                history=(*report.history, (report.evaluations, plan.arrival_time)),
-            )
-    if report.status == "planned":
+    if not plan.is_free or (report.plan is not None and plan.rank >= report.plan.rank):
         return report
-    reason = (
-        f"no collision-free plan within {scenario.time_limit:g} s was found; the goal may still be reachable"
+    controls = steered(scenario, plan.trajectory.u)
+    check = replay(scenario, controls, PERIOD)
+    proof = certify(scenario, controls, PERIOD, until=check.arrival_time)
+    if not (check.solves and proof.is_clear):
+        return report
+    return replace(
+        report,
+        status="planned",
+        reason="",
+        plan=plan,
+        law=found.law,
+        replay=check,
+        certificate=proof,
+        history=(*report.history, (report.evaluations, plan.arrival_time)),
     )
-    return replace(report, reason=reason)
+
+
+def _not_found(report: PlanReport) -> str:
+    return (
+        f"no collision-free plan within {report.scenario.time_limit:g} s was found in {report.evaluations} rollouts"
+        f"{WHEN[report.ended]}; the goal may still be reachable"
+    )

@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 
 from applications.rosbot.discs import grown
+from applications.rosbot.floods import flooded
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
@@ -45,8 +46,11 @@ def reachability(scenario: Scenario) -> Reachability:
     """Whether some way leads from the start into the goal's tolerance, the time limit aside.
 
     "unreachable" is proved for any robot no larger than this one's body, whatever its limits. "reachable" is proved for
-    obstacles at rest and limits that let the robot stand, drive and turn by themselves; otherwise it is "undecided".
+    obstacles at rest and limits that let a round robot stand, drive and turn by themselves; otherwise it is
+    "undecided". In a room it is a matter of floods (`floods.py`).
     """
+    if scenario.field is not None:
+        return Reachability(*flooded(scenario, scenario.field))
     fixed = scenario.discs[~np.any(scenario.circles[:, 2:4], axis=1)]
     indices = np.flatnonzero(~np.any(scenario.circles[:, 2:4], axis=1))
     smaller = grown(fixed, -SLACK)
@@ -65,6 +69,10 @@ def _route(scenario: Scenario, larger: Floats) -> Reachability:
     if not scenario.is_static:
         return Reachability(
             "undecided", "the obstacles at rest leave a route; what the moving ones leave is not tested"
+        )
+    if not scenario.is_round:
+        return Reachability(
+            "undecided", "a route is free for a disc within the body; the rest of it is not tested"
         )
     standing = scenario.speed_limits[0] <= 0.0 <= scenario.speed_limits[1]
     if not standing or not scenario.turn_limits[0] <= 0.0 <= scenario.turn_limits[1]:

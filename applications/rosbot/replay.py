@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from applications.rosbot.gaps import gaps_to_room, least_gap
+from applications.rosbot.lags import nominal_path
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ScenarioError
@@ -30,16 +32,20 @@ class Replay:
         return self.in_time and self.in_limits and self.in_bounds and self.clearance >= -SLACK
 
 
-def replay(scenario: Scenario, controls: Floats, period: float | Floats) -> Replay:
+def replay(
+    scenario: Scenario, controls: Floats, period: float | Floats, *, via: Floats = np.empty((0, 3))
+) -> Replay:
     """Drive (v, omega) pairs, (n, 2), for `period` seconds each (one number, or one per pair), in steps of 1 ms.
 
-    The robot starts at the scenario's start and stops at the end of the controls.
+    The robot starts at the scenario's start and stops at the end of the controls. It has arrived in the goal's
+    tolerance once it has been within the third number (m) of each place in `via` (m, 3), one after the other.
     """
     controls = np.asarray(controls, dtype=np.float64)
     durations = np.broadcast_to(np.asarray(period, dtype=np.float64), (len(controls),))
     _check(controls, durations)
-    trajectory = drive(scenario.start, controls, durations)
+    trajectory = _driven(scenario, controls, durations)
     reached = within(scenario, trajectory[:, 1:])
+    reached[: _passed(trajectory, via)] = False
     arrived = bool(np.any(reached))
     trajectory = trajectory[: int(np.argmax(reached)) + 1] if arrived else trajectory
     arrival_time = float(trajectory[-1, 0]) if arrived else np.inf
@@ -51,6 +57,13 @@ def replay(scenario: Scenario, controls: Floats, period: float | Floats) -> Repl
         in_time=arrival_time <= scenario.time_limit,
         trajectory=frozen(trajectory),
     )
+
+
+def _driven(scenario: Scenario, controls: Floats, durations: Floats) -> Floats:
+    if scenario.model != "dynamic_unicycle":
+        return drive(scenario.start, controls, durations)
+    path = nominal_path(scenario.start, controls, durations)
+    return np.column_stack([path.times, path.poses])
 
 
 def drive(start: Floats, controls: Floats, durations: Floats) -> Floats:
@@ -90,16 +103,30 @@ def within(scenario: Scenario, poses: Floats) -> npt.NDArray[np.bool_]:
 
 def clearance(scenario: Scenario, trajectory: Floats) -> float:
     """The smallest gap (m) between the robot and the obstacles, moving ones where they then are; inf without any."""
-    t, x, y, _ = trajectory.T
-    gaps = (
-        np.sqrt(np.min((x - cx - vx * t) ** 2 + (y - cy - vy * t) ** 2)) - radius - scenario.radius
-        for cx, cy, vx, vy, radius in scenario.circles
-    )
-    return float(min(gaps, default=np.inf))
+    t, poses = trajectory[:, 0], trajectory[:, 1:]
+    gap = least_gap(scenario.body, scenario.circles, poses, t)
+    if scenario.room is not None:
+        gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
+    return gap
+
+
+def _passed(trajectory: Floats, via: Floats) -> int:
+    """The first sample at which all places have been passed in their order; the number of samples if none is."""
+    first = 0
+    for x, y, tolerance in via:
+        near = np.hypot(trajectory[first:, 1] - x, trajectory[first:, 2] - y) <= tolerance + SLACK
+        if not np.any(near):
+            return len(trajectory)
+        first += int(np.argmax(near))
+    return first
 
 
 def _in_limits(scenario: Scenario, controls: Floats) -> bool:
     low, high = np.array([scenario.speed_limits, scenario.turn_limits]).T
+    if scenario.model == "car":
+        sharpest = np.abs(controls[:, 0]) / scenario.turning_radius
+        if np.any(np.abs(controls[:, 1]) > sharpest + SLACK):
+            return False
     return bool(np.all((controls >= low - SLACK) & (controls <= high + SLACK)))
 
 

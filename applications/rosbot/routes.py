@@ -8,11 +8,14 @@ import numpy.typing as npt
 from scipy.sparse.csgraph import dijkstra
 
 from applications.rosbot.discs import clear_of, grown, outermost
+from applications.rosbot.lattice import ways
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.tangents import TangentGraph, tangent_graph
 from gpsynth.arrays import Floats, frozen
+from gpsynth.distance_field import DistanceField
 
 SPACING = np.deg2rad(7.5)  # between the vertices on an arc
+FEW = 50  # discs that are all looked at
 SAME = 1e-7  # m; lengths of routes that differ by less belong to one route
 
 
@@ -37,17 +40,50 @@ def routes(scenario: Scenario, *, count: int = 5, margin: float = 0.0) -> list[R
     """Up to `count` routes of distinct homotopy class for the robot's center, the shortest first.
 
     They keep `margin` (m) besides the robot's radius where start and goal allow it. Obstacles count where they are at
-    time 0. Classes that are longer than 1.8 times the shortest plus 1 m are left out.
+    time 0. Classes that are longer than 1.8 times the shortest plus 1 m are left out. In a room the routes are those of
+    a lattice (`lattice.py`).
     """
+    if scenario.field is not None:
+        return _in_room(scenario, scenario.field, count, scenario.radius + margin)
     start, goal = scenario.start[:2], scenario.goal[:2]
     discs = clear_of(clear_of(grown(scenario.discs, margin), start), goal)
     return shortest_routes(start, goal, discs, scenario.bounds, count=count)
 
 
+def _in_room(scenario: Scenario, field: DistanceField, count: int, clearance: float) -> list[Route]:
+    for x, y, radius in scenario.discs:
+        gaps = np.hypot(*(field.nodes - [x, y]).transpose(2, 0, 1)) - radius + scenario.radius
+        field = field.joined(gaps * np.abs(gaps))
+    found = ways(scenario.start[:2], scenario.goal[:2], field, clearance, count=count)
+    return [Route(way, float(np.hypot(*np.diff(way, axis=0).T).sum())) for way in found]
+
+
 def shortest_routes(start: Floats, goal: Floats, discs: Floats, bounds: Floats, *, count: int) -> list[Route]:
-    """The routes between two points (2,) outside of discs (c, 3), within bounds (4,)."""
-    if np.hypot(*(goal - start)) < SAME:
+    """The routes between two points (2,) outside of discs (c, 3), within bounds (4,).
+
+    No way of some length touches a disc by which there is no way as short. So of many discs only those are looked at
+    that the longest route may touch.
+    """
+    straight = float(np.hypot(*(goal - start)))
+    if straight < SAME:
         return [Route(frozen(np.array([start, goal])), 0.0)]
+    there, back = (np.hypot(*(discs[:, :2] - end).T) for end in (start, goal))
+    ways = there + back - 2.0 * discs[:, 2]
+    reach = _longest(1.25 * straight) if len(discs) > FEW else np.inf
+    while True:
+        near = ways <= reach
+        found = _taut_routes(start, goal, discs[near], bounds, count)
+        if not found or np.all(near) or _longest(found[0].length) <= reach:
+            return found
+        reach = _longest(found[0].length)
+
+
+def _longest(shortest: float) -> float:
+    """How long (m) a route may be."""
+    return 1.8 * shortest + 1.0
+
+
+def _taut_routes(start: Floats, goal: Floats, discs: Floats, bounds: Floats, count: int) -> list[Route]:
     tangents = tangent_graph(start, goal, outermost(discs), bounds)
     # The shortest way through a touching point is taut there as well, hence a class of its own.
     there, before = dijkstra(tangents.graph, indices=0, return_predecessors=True)
@@ -55,7 +91,7 @@ def shortest_routes(start: Floats, goal: Floats, discs: Floats, bounds: Floats, 
     lengths = there + back
     found: list[Route] = []
     for node in np.argsort(lengths, kind="stable"):
-        longest = 1.8 * found[0].length + 1.0 if found else np.inf
+        longest = _longest(found[0].length) if found else np.inf
         if len(found) == count or not lengths[node] <= longest or np.isinf(lengths[node]):
             break
         if any(_passes(route, tangents.points[node], float(lengths[node])) for route in found):

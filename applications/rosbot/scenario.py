@@ -1,19 +1,29 @@
-"""A planning scenario: a round robot with its limits, start, goal and circular obstacles that may move."""
+"""A planning scenario: a robot with its limits, start and goal, circles that may move, and the room around them."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
+from applications.rosbot.footprint import inner_radius
+from applications.rosbot.gaps import gaps_at, gaps_to_room
+from applications.rosbot.room import Room
 from gpsynth.arrays import Floats, frozen
+from gpsynth.distance_field import DistanceField
 from gpsynth.errors import ScenarioError
 
 MOST = 1e4  # m, s: what is larger is a slip of the pen, and no plan for it ends
 FASTEST = 100.0  # m/s, rad/s
+MODELS = ("unicycle", "dynamic_unicycle", "car")
+FINE, COARSE = (
+    0.01,
+    0.05,
+)  # m, between the nodes of the room's field: a fifth of the smallest circle of the body
 
 
 @dataclass(frozen=True, eq=False)
 class Scenario:
-    """What is to be planned: from `start` into the tolerance around `goal`, clear of every circle, in least time.
+    """What is to be planned: from `start` into the tolerance around `goal`, clear of every obstacle, in least time.
 
     Raises ScenarioError if a number is not finite, limits are reversed, or start or goal are out of place.
     """
@@ -28,7 +38,13 @@ class Scenario:
     circles: Floats = field(
         default_factory=lambda: np.zeros((0, 5))
     )  # (c, 5) x m, y m, vx m/s, vy m/s, radius m
-    radius: float = 0.15  # m, of the robot
+    radius: float = 0.15  # m, of the robot; of another body than a disc the largest around its origin
+    body: Floats = field(
+        default_factory=lambda: np.zeros((0, 3))
+    )  # (f, 3) x m, y m, radius m in the robot's frame; without any it is a disc
+    room: Room | None = None  # obstacles at rest that are no circles
+    model: str = "unicycle"  # or another of MODELS
+    turning_radius: float = 0.0  # m, the least of a car; 0 of others
     position_tolerance: float = 0.05  # m
     heading_tolerance: float = 0.1  # rad
     time_limit: float = 60.0  # s
@@ -37,13 +53,25 @@ class Scenario:
     expect_feasible: bool | None = None  # what the author of the scenario says
 
     def __post_init__(self) -> None:
-        for name, shape in (("start", (3,)), ("goal", (3,)), ("bounds", (4,)), ("circles", (-1, 5))):
+        for name, shape in (
+            ("start", (3,)),
+            ("goal", (3,)),
+            ("bounds", (4,)),
+            ("circles", (-1, 5)),
+            ("body", (-1, 3)),
+        ):
             object.__setattr__(self, name, frozen(_shaped(name, getattr(self, name), shape)))
         for name in ("speed_limits", "turn_limits"):
             low, high = _shaped(name, getattr(self, name), (2,))
             object.__setattr__(self, name, (float(low), float(high)))
+        if len(self.body):
+            _check_body(self.body)
+            object.__setattr__(self, "radius", inner_radius(self.body))
         _check_numbers(self)
+        _check_model(self)
         _check_obstacles(self)
+        if not len(self.body):
+            object.__setattr__(self, "body", frozen(np.array([[0.0, 0.0, self.radius]])))
         _check_places(self)
 
     @property
@@ -55,6 +83,21 @@ class Scenario:
     def is_static(self) -> bool:
         """Whether no obstacle moves."""
         return not np.any(self.circles[:, 2:4])
+
+    @property
+    def is_round(self) -> bool:
+        """Whether the robot is a disc around its origin."""
+        return len(self.body) == 1 and not np.any(self.body[:, :2])
+
+    @cached_property
+    def field(self) -> DistanceField | None:
+        """The distance field of the room; start, goal and circles lie within its grid."""
+        if self.room is None:
+            return None
+        x, y, radius = self.discs.T
+        places = [self.start[:2], self.goal[:2], *np.column_stack([x - radius, y - radius])]
+        places += list(np.column_stack([x + radius, y + radius]))
+        return self.room.field(float(np.clip(0.2 * self.body[:, 2].min(), FINE, COARSE)), np.array(places))
 
 
 def _shaped(name: str, value: object, shape: tuple[int, ...]) -> Floats:
@@ -87,6 +130,27 @@ def _check_numbers(scenario: Scenario) -> None:
             raise ScenarioError(f"{name} are [{low:g}, {high:g}]; the first must be less than the second")
 
 
+def _check_model(scenario: Scenario) -> None:
+    if scenario.model not in MODELS:
+        raise ScenarioError(f"the model is {scenario.model!r}; expected {', '.join(MODELS)}")
+    if scenario.model == "car" and not 0.0 < scenario.turning_radius <= MOST:
+        raise ScenarioError(
+            f"the car's turning radius is {scenario.turning_radius:g} m; expected more than 0"
+        )
+    if scenario.model != "car" and scenario.turning_radius != 0.0:
+        raise ScenarioError(
+            f"a {scenario.model} has the turning radius {scenario.turning_radius:g} m; expected none"
+        )
+
+
+def _check_body(body: Floats) -> None:
+    for index, (x, y, radius) in enumerate(body):
+        if not (max(abs(x), abs(y)) <= MOST and 0.0 < radius <= MOST):
+            raise ScenarioError(
+                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius above 0"
+            )
+
+
 def _check_obstacles(scenario: Scenario) -> None:
     if not 0.0 <= scenario.radius <= MOST:
         raise ScenarioError(f"the robot's radius is {scenario.radius}; expected a number from 0 to {MOST:g}")
@@ -107,11 +171,18 @@ def _check_places(scenario: Scenario) -> None:
                 f"{name} ({x:g}, {y:g}) lies outside the bounds, "
                 f"x in [{x_low:g}, {x_high:g}] and y in [{y_low:g}, {y_high:g}]"
             )
-    x, y, radius = scenario.discs.T
-    gaps = np.hypot(x - scenario.start[0], y - scenario.start[1]) - radius
+    gaps = gaps_at(scenario.body, scenario.circles, scenario.start)
     if np.any(gaps < 0.0):
-        index = int(np.argmin(gaps))
-        raise ScenarioError(
-            f"start ({scenario.start[0]:g}, {scenario.start[1]:g}) overlaps obstacles[{index}] by {-gaps[index]:.3g} m "
-            f"with the robot's radius of {scenario.radius:g} m; expected a free start"
-        )
+        raise _overlap(scenario, f"obstacles[{int(np.argmin(gaps))}]", float(gaps.min()))
+    if scenario.room is not None:
+        gap = float(gaps_to_room(scenario.body, scenario.room, scenario.start[np.newaxis])[0])
+        if gap < 0.0:
+            raise _overlap(scenario, "the map, a polygon or a segment", gap)
+
+
+def _overlap(scenario: Scenario, what: str, gap: float) -> ScenarioError:
+    robot = f"the robot's radius of {scenario.radius:g} m" if scenario.is_round else "the robot's footprint"
+    x, y, _ = scenario.start
+    return ScenarioError(
+        f"start ({x:g}, {y:g}) overlaps {what} by {-gap:.3g} m with {robot}; expected a free start"
+    )

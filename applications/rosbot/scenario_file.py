@@ -11,7 +11,16 @@ from typing import Literal
 import msgspec
 import numpy as np
 
-from applications.rosbot.scenario import Scenario
+from applications.rosbot.scenario import MODELS, Scenario
+from applications.rosbot.scenario_parts import (
+    Circle,
+    Footprint,
+    MapPart,
+    Obstacle,
+    Strict,
+    body_of,
+    room_of,
+)
 from gpsynth.errors import ScenarioError
 from gpsynth.files import SURROGATES, check_readable
 
@@ -19,50 +28,40 @@ FORMAT = "rosbot-scenario/1"
 LARGEST_FILE = 4_000_000  # bytes
 NAME = re.compile("[A-Za-z_]{1,60}")  # what fields are called: nothing that a complaint could not repeat
 CHOICES = MappingProxyType(
-    {"format": FORMAT, "model": "unicycle", "type": "circle", "applies_to": "robot_centre"}
-)  # fields with one possible text
+    {
+        "format": FORMAT,
+        "model": ", ".join(MODELS),
+        "type": "circle, segment, polygon",
+        "robot.footprint.type": "circle, circles, rectangle",
+        "map.unknown": "occupied, free",
+        "applies_to": "robot_centre",
+    }
+)  # what a text may be, by the place or the name of its field
 
 
-class _Strict(msgspec.Struct, forbid_unknown_fields=True):
-    pass
-
-
-class _Limits(_Strict):
+class _Limits(Strict):
     v: tuple[float, float]
     omega: tuple[float, float]
 
 
-class _Footprint(_Strict):
-    type: Literal["circle"]
-    radius: float
-
-
-class _Robot(_Strict):
-    footprint: _Footprint
+class _Robot(Strict):
+    footprint: Footprint
+    turning_radius: float = 0.0
     name: str = "rosbot"
 
 
-class _Bounds(_Strict):
+class _Bounds(Strict):
     x: tuple[float, float]
     y: tuple[float, float]
     applies_to: Literal["robot_centre"] = "robot_centre"
 
 
-class _Tolerance(_Strict):
+class _Tolerance(Strict):
     position: float
     heading: float
 
 
-class _Circle(_Strict):
-    type: Literal["circle"]
-    x: float
-    y: float
-    r: float
-    vx: float = 0.0
-    vy: float = 0.0
-
-
-class _Document(_Strict):
+class _Document(Strict):
     format: Literal["rosbot-scenario/1"]
     limits: _Limits
     robot: _Robot
@@ -71,41 +70,46 @@ class _Document(_Strict):
     goal: tuple[float, float, float]
     goal_tolerance: _Tolerance
     time_limit: float
-    obstacles: list[_Circle]
+    obstacles: list[Obstacle]
+    map: MapPart | None = None
     name: str = ""
     family: str = ""
     note: str = ""
-    model: Literal["unicycle"] = "unicycle"
+    model: Literal["unicycle", "dynamic_unicycle", "car"] = "unicycle"
     expect_feasible: bool | None = None
 
 
 def read_scenario(path: str | Path) -> Scenario:
     """The scenario in a file; ScenarioError names the file, the field and the value that is wrong."""
     try:
-        return parse_scenario(_text(Path(path)), name=Path(path).stem)
+        return parse_scenario(_text(Path(path)), name=Path(path).stem, folder=Path(path).parent)
     except ScenarioError as error:
         raise ScenarioError(f"{path}: {error}") from None
 
 
-def parse_scenario(text: str | bytes, *, name: str = "") -> Scenario:
-    """The scenario in a JSON text, called `name` if the text does not name it."""
+def parse_scenario(text: str | bytes, *, name: str = "", folder: Path = Path()) -> Scenario:
+    """The scenario in a JSON text, called `name` if the text does not name it; its map is looked for in `folder`."""
     data = _json(text)
     try:
         document = msgspec.convert(data, _Document)
     except msgspec.ValidationError as error:
         raise ScenarioError(_sentence(str(error), data)) from None
-    return _scenario(document, name)
+    return _scenario(document, name, folder)
 
 
-def _scenario(document: _Document, name: str) -> Scenario:
+def _scenario(document: _Document, name: str, folder: Path) -> Scenario:
+    circles = [each for each in document.obstacles if isinstance(each, Circle)]
     return Scenario(
         start=np.array(document.start),
         goal=np.array(document.goal),
         speed_limits=document.limits.v,
         turn_limits=document.limits.omega,
         bounds=np.array([*document.bounds.x, *document.bounds.y]),
-        circles=np.array([(c.x, c.y, c.vx, c.vy, c.r) for c in document.obstacles]).reshape(-1, 5),
-        radius=document.robot.footprint.radius,
+        circles=np.array([(c.x, c.y, c.vx, c.vy, c.r) for c in circles]).reshape(-1, 5),
+        **body_of(document.robot.footprint),
+        room=room_of(document.obstacles, document.map, folder),
+        model=document.model,
+        turning_radius=document.robot.turning_radius,
         position_tolerance=document.goal_tolerance.position,
         heading_tolerance=document.goal_tolerance.heading,
         time_limit=document.time_limit,
@@ -180,7 +184,7 @@ def _sentence(complaint: str, data: object) -> str:
         return f"{_joined(place, field[2])} is {_short(value[field[2]])}; the format has no such field"
     if field:
         return f"{_joined(place, field[2])} is missing"
-    expected = CHOICES.get(place.rpartition(".")[2])
+    expected = CHOICES.get(place) or CHOICES.get(place.rpartition(".")[2])
     reason = f"expected {expected}" if expected else reason[:1].lower() + reason[1:].replace("`", "")
     return f"{place or 'the document'} is {_short(value)}; {reason}"
 

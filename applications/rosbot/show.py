@@ -41,6 +41,7 @@ class SavedPlan(msgspec.Struct):
     planning_time: Annotated[float, msgspec.Meta(ge=0.0)]  # s
     control_period: Annotated[float, msgspec.Meta(gt=0.0, le=FARTHEST)]  # s
     reason: str = ""
+    ended: str = "complete"
     arrival_time: Duration | None = None  # s
     clearance: float | None = None  # m; null without obstacles
     lower_bound: float | None = None  # s

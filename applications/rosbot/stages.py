@@ -1,28 +1,45 @@
 """The two stages as a person runs them: progress shown and logged, results in a run folder."""
 
+import json
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
+import click
 import numpy as np
 
 from applications.rosbot.drive_figure import draw_drive
 from applications.rosbot.drive_file import status_of, write_drive
 from applications.rosbot.figures import save_figure
 from applications.rosbot.loop import Drive
+from applications.rosbot.map_copy import copy_map
 from applications.rosbot.model import STATES
-from applications.rosbot.plan_file import write_plan
+from applications.rosbot.plan_file import plan_document, write_plan
 from applications.rosbot.planner import Effort, PlanReport, plan_scenario
 from applications.rosbot.scenario_file import read_scenario
 from applications.rosbot.sensing import Sensor
 from applications.rosbot.show import redraw, scenario_beside
 from applications.rosbot.stabilizer import SEARCH_BUDGET, stabilization, synthesize_stabilizer
+from applications.rosbot.through import plan_through
 from gpsynth.cli import EncodingName, load_law, recorder, status, write_result
-from gpsynth.errors import LawError
+from gpsynth.errors import FileError, GpsynthError, LawError
 from gpsynth.files import write_bytes
 from gpsynth.law import Law
 from gpsynth.record import Run
 from gpsynth.synthesis import SynthesisResult
 
 CONTROLS = ("v", "omega")
+# what drawing and writing can end with; a plan that is written is not lost for any of it
+FAILURES = (
+    GpsynthError,
+    OSError,
+    ImportError,
+    MemoryError,
+    ArithmeticError,
+    ValueError,
+    TypeError,
+    RuntimeError,
+)
 
 
 def run_synthesis(
@@ -62,21 +79,28 @@ def run_plan(
     seed: int,
     effort: Effort = Effort(),
     threads: int = 1,
+    via: Sequence[tuple[float, float, float]] = (),
 ) -> Path:
     """Stage 2 into a run folder: the plan, its picture and a copy of its scenario; the log holds each improvement.
 
-    A search that Ctrl-C ends is written as far as it came, and KeyboardInterrupt is raised after that.
+    The plan is written first. Raises FileError if that fails, when it has been printed; a failure after it is a warning
+    on stderr.
     """
     scenario, source = read_scenario(scenario_file), scenario_file.read_bytes()
     with status(f"planning {scenario.name}"):
-        report = plan_scenario(scenario, [law], seed=seed, effort=effort, threads=threads)
-    _log(run, f"plan {scenario.name}", report)
+        if via:
+            report = plan_through(scenario, np.array(via), law, seed=seed, effort=effort, threads=threads)
+        else:
+            report = plan_scenario(scenario, [law], seed=seed, effort=effort, threads=threads)
     path = run.folder / plan_file
-    write_bytes(scenario_beside(path), source)
-    write_plan(report, path)
-    redraw(path)
-    if report.ended == "interrupted":
-        raise KeyboardInterrupt
+    _keep(report, path)
+    for what, work, older in (
+        ("its map", lambda: copy_map(scenario_file, run.folder), None),
+        ("its scenario", lambda: write_bytes(scenario_beside(path), source), scenario_beside(path)),
+        ("its picture", lambda: redraw(path), path.with_suffix(".png")),
+        ("its log", lambda: _log(run, f"plan {scenario.name}", report), None),
+    ):
+        _besides(path, what, work, older)
     return path
 
 
@@ -91,6 +115,30 @@ def write_drive_run(run: Run, scenario_file: Path, drive: Drive, law: Law, senso
         f"{scenario.name}: {status_of(drive)}, {check.trajectory[-1, 0]:.2f} s, clearance {check.clearance:.3f} m, "
         f"planning {1e3 * np.median(drive.cycles):.0f} ms a cycle, at most {1e3 * drive.cycles.max():.0f} ms"
     )
+
+
+def _keep(report: PlanReport, path: Path) -> None:
+    """Write a plan, before anything else that may fail; if it cannot be written, print it and raise FileError."""
+    try:
+        write_plan(report, path)
+    except KeyboardInterrupt:
+        write_plan(report, path)
+        raise
+    except FileError as error:
+        click.echo(json.dumps(plan_document(report), allow_nan=False))
+        raise FileError(f"{error}; what was found is on standard output instead") from None
+
+
+def _besides(path: Path, what: str, work: Callable[[], object], older: Path | None) -> None:
+    """Do what comes after a plan is written; a failure is a warning, and what an earlier run has left there goes."""
+    try:
+        work()
+    except FAILURES as error:
+        if older is not None:
+            with suppress(OSError):
+                older.unlink(missing_ok=True)
+        reason = " ".join(str(error).split()) or type(error).__name__
+        click.echo(f"warning: {path} is written, {what} is not: {reason}", err=True)
 
 
 def load_steering_law(path: Path) -> Law:

@@ -3,7 +3,7 @@
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf
+from math import ceil, inf
 
 import numpy as np
 
@@ -11,9 +11,10 @@ from applications.rosbot.guides import Guide, direct_guides, guides_along, top_s
 from applications.rosbot.routes import Route
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import anywhere, nearby, repeated, schedules_along
+from applications.rosbot.vehicles import pose_plans
 from gpsynth.arrays import Floats
 from gpsynth.law import Law
-from gpsynth.planning import Particles, Plan, PlanSettings, plans
+from gpsynth.planning import Particles, Plan, PlanSettings, Weights
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedules
 from gpsynth.seeds import stream
@@ -21,6 +22,7 @@ from gpsynth.seeds import stream
 SCOUT, CHASE, REFINE = range(1, 4)  # stages of the random streams
 GUIDES = 8  # along which a swarm's first schedules lie
 SPARE = 1.5  # of the time along a guide, for a first plan
+LEG = 2.5  # s, that equilibrium points are apart at most at first
 BEYOND = 1.0  # m, how far from the guides equilibrium points may lie
 
 
@@ -38,6 +40,7 @@ class Effort:
     refined: int = 2
     added: int = 2  # points that refinement adds
     nearness: float = 0.3  # noise of refinement's first schedules, as a share of the scouts'
+    weights: Weights = Weights()  # of what counts beside time
     attempts: int = 3  # with other random numbers and twice the time budget, while nothing is found
     rollouts: float = inf  # after which the best plan so far is given
     deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
@@ -120,6 +123,12 @@ class Search:
             [],
         ]
 
+    @cached_property
+    def points(self) -> int:
+        """The equilibrium points: more on a long way, one for every LEG of the best guide."""
+        best = min((way[0] for way in self.ways if way), key=lambda guide: guide.score, default=None)
+        return self.effort.points if best is None else max(self.effort.points, ceil(best.duration / LEG))
+
     @property
     def first_budget(self) -> float:
         """The first T+ (s): half as long again as the best guide, and twice as long at every further attempt."""
@@ -139,8 +148,8 @@ class Search:
         swarms: list[Swarm] = []
         for task in tasks:
             problem, law = self.problems[task.team]
-            settings = replace(task.settings, top_speed=top_speed(self.scenario))
-            for plan in plans(
+            settings = replace(task.settings, top_speed=top_speed(self.scenario), weights=self.effort.weights)
+            for plan in pose_plans(
                 problem,
                 law,
                 settings,
@@ -154,19 +163,19 @@ class Search:
                 yield Found(plan, law, spent + plan.evaluations)
             swarms += task.swarms(plan.particles)
             spent += plan.evaluations
-            budget = min(budget, plan.arrival_time) if plan.is_free else budget
+            budget = min(budget, plan.value) if plan.is_free else budget
         return swarms, budget, spent
 
     def _scouts(self) -> Iterator[Task]:
         """For each law swarms along the guides of every way, every fourth particle anywhere."""
         effort, teams = self.effort, len(self.problems)
-        exact = [schedules_along(way, effort.points) if way else None for way in self.ways]
+        exact = [schedules_along(way, self.points) if way else None for way in self.ways]
         ways = [
             (way, each)
             for way, each in zip(self.ways, exact, strict=True)
             for _ in range(-(-effort.swarms // teams))
         ]
-        settings = replace(effort.scouts, points=effort.points, swarms=len(ways))
+        settings = replace(effort.scouts, points=self.points, swarms=len(ways))
         for team in range(teams):
             rng = stream(self.seed, SCOUT, self.attempt, team, 0)
             initial = []
@@ -181,7 +190,7 @@ class Search:
 
     def _chasers(self, leaders: Sequence[Swarm]) -> Iterator[Task]:
         """The swarms go on from where their particles were best, with new ones besides."""
-        settings = replace(self.effort.chasers, points=self.effort.points)
+        settings = replace(self.effort.chasers, points=self.points)
         for team in range(len(self.problems)):
             rng = stream(self.seed, CHASE, self.attempt, team, 0)
             members = [swarm for swarm in leaders if swarm.team == team]
@@ -196,7 +205,7 @@ class Search:
 
     def _refiner(self, swarm: Swarm) -> Task:
         """The best schedule with more points, searched nearby."""
-        count = self.effort.points + self.effort.added
+        count = self.points + self.effort.added
         settings = replace(self.effort.refiners, points=count)
         path = (REFINE, self.attempt, swarm.team, swarm.number)
         rng = stream(self.seed, *path, 0)
@@ -204,7 +213,7 @@ class Search:
         return Task(swarm.team, settings, initial, [swarm.promise], (*path, 1))
 
     def _anywhere(self, count: int, rng: np.random.Generator) -> Schedules:
-        return anywhere(self.region, self.effort.points, count, rng)
+        return anywhere(self.region, self.points, count, rng)
 
 
 def _leaders(swarms: Sequence[Swarm], count: int) -> list[Swarm]:

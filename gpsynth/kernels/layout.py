@@ -27,7 +27,7 @@ class Rows(NamedTuple):
     before: int  # 1, the arrival measure at the tick before
     share: int  # 1, of the last period, that lies behind the arrival
     limit: int  # 1, of the toll
-    near: int  # 4, clearance, exposure, depth and one row of scratch
+    near: int  # 10, clearance, exposure, depth and seven rows of scratch
     plant: int  # q, parameters of the plant
     error: int  # n or 0, of the measured state
     acting: int  # m or 0, controls that have arrived
@@ -87,13 +87,26 @@ class Clock(NamedTuple):
     bound: float  # of the running cost of a block's lanes together: beyond it the block ends, at a cost of infinity
 
 
-class World(NamedTuple):
-    """Obstacles; none when `position` is empty."""
+class Buckets(NamedTuple):
+    """For each cell of a grid the circles that can be nearest from there; no cells: all circles everywhere."""
 
-    position: Ints  # (2,) states that are x and y, or (0,)
-    circles: Floats  # (o, 5) x, y, vx, vy, radius with the robot's radius added
-    area: Floats  # (4,) x_low, x_high, y_low, y_high
+    firsts: Ints  # (cells + 1,) where the circles of a cell, row by row, begin in `members`
+    members: Ints  # numbers of circles, counted from the first at rest
+    lattice: Floats  # (6,) x, y of its corner (m), side of a cell (m), columns, rows, longest chord (m)
+
+
+class World(NamedTuple):
+    """Obstacles and the robot's body; none when `position` is empty."""
+
+    position: Ints  # states that are x and y, (2,), and the heading, (3,), where the body has one; or (0,)
+    circles: Floats  # (o, 5) x, y, vx, vy, radius; those that move first
+    movers: int  # how many of them move
+    buckets: Buckets  # of the others
+    area: Floats  # (4,) x_low, x_high, y_low, y_high, of the origin of the body
     margin: float  # m, less clearance than this counts as exposure
+    body: Floats  # (f, 3) circles of the robot: x, y in its own frame, radius
+    squares: Floats  # (r, c) m^2, of a distance field; (0, 0) without one
+    grid: Floats  # (3,) x, y of its first node and its spacing
 
 
 class Toll(NamedTuple):
@@ -119,7 +132,10 @@ CODES = types.NamedTuple((CODE, INTEGERS, INTEGERS, VECTOR, INTEGERS, INTEGERS, 
 LANES = types.NamedTuple((CODE, MATRIX, MATRIX, MATRIX, TENSOR, MATRIX), Lanes)
 CONDITIONS = types.NamedTuple((MATRIX, INTEGERS, _INTEGER, VECTOR, TENSOR, INTEGERS), Conditions)
 CLOCK = types.NamedTuple((VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER, _NUMBER), Clock)
-WORLD = types.NamedTuple((INTEGERS, MATRIX, VECTOR, _NUMBER), World)
+BUCKETS = types.NamedTuple((INTEGERS, INTEGERS, VECTOR), Buckets)
+WORLD = types.NamedTuple(
+    (INTEGERS, MATRIX, _INTEGER, BUCKETS, VECTOR, _NUMBER, MATRIX, MATRIX, VECTOR), World
+)
 TOLL = types.NamedTuple((VECTOR, *[_NUMBER] * 8), Toll)
 
 Group = TypeVar("Group", bound=tuple[Any, ...])

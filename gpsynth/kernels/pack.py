@@ -61,7 +61,7 @@ class Extent(NamedTuple):
 def rows_of(extent: Extent) -> Rows:
     """Where the quantities of a rollout stand; programs follow from row `total` on, parameters after them."""
     states, late = extent.states, (extent.acting, extent.slots * extent.acting)
-    fixed = (states, states, states, states, 1, states, 2 * states, *[1] * 8, 4)
+    fixed = (states, states, states, states, 1, states, 2 * states, *[1] * 8, 10)
     sizes = (*fixed, extent.plant, states if extent.noise else 0, *late)
     first = np.concatenate(([0], np.cumsum(sizes))).tolist()
     return Rows(*first, *first[-1:])

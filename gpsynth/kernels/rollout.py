@@ -345,7 +345,7 @@ def roll(
                 if bends:
                     approach(
                         *(w, ahead, rows.base, rows.state, rows.slope, rows.slope + n, rows.alive, rows.near),
-                        *(world.position, world.circles, world.area, now, clock.step, world.margin),
+                        *(world, now, clock.step),
                     )
             for k in range(len(code.angles)):
                 row = rows.state + code.angles[k]

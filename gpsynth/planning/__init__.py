@@ -1,7 +1,18 @@
 """Stage 2: with the law fixed, search the equilibrium points that bring the plant to its goal in least time."""
 
+from gpsynth.planning.certificate import certified_clearance
 from gpsynth.planning.objective import Objective
 from gpsynth.planning.rounds import Particles, Plan, plan, plans
 from gpsynth.planning.settings import PlanSettings
+from gpsynth.planning.weights import Weights
 
-__all__ = ["Objective", "Particles", "Plan", "PlanSettings", "plan", "plans"]
+__all__ = [
+    "Objective",
+    "Particles",
+    "Plan",
+    "PlanSettings",
+    "Weights",
+    "certified_clearance",
+    "plan",
+    "plans",
+]

@@ -62,7 +62,7 @@ class Objective:
         """Costs (N,) of eq. 17; infinity where a rollout diverged."""
         settings = self.settings
         arrived = np.isfinite(rollouts.arrival[:, 0])
-        used = np.where(arrived, self.arrivals(rollouts), rollouts.end[:, 0])
+        used = self.spent(rollouts)
         error = self.errors(rollouts.final[:, 0])
         if settings.obstacles == "path":
             error = np.where(arrived, 0.0, error)  # within the tolerance only time counts
@@ -73,6 +73,16 @@ class Objective:
             + settings.gamma * self.obstacle_term(rollouts, points)
         )  # eq. 17
         return np.where(rollouts.diverged[:, 0] > 0.0, np.inf, cost)
+
+    def spent(self, rollouts: Rollouts) -> Floats:
+        """T_used (N,) in s: the arrival time or the end of the rollout, with what the weights add."""
+        arrival, end = rollouts.arrival[:, 0], rollouts.end[:, 0]
+        arrived = np.isfinite(arrival)
+        used = np.where(arrived, self.arrivals(rollouts), end)
+        if self.settings.weights.is_time_alone:
+            return used
+        last = np.where(arrived, arrival, end)
+        return rollouts.cost[:, 0] * np.where(last > 0.0, used / np.where(last > 0.0, last, 1.0), 1.0)
 
     def errors(self, states: Floats) -> Floats:
         """Distances (N,) of states (N, n) from the goal, angles wrapped, in the units of the states."""
@@ -101,12 +111,13 @@ class Objective:
 
     def covered(self, points: Floats) -> Floats:
         """How many of the points (N, k, n) of each schedule lie in an obstacle, as it is at time 0."""
-        world = self.evaluator.world
-        if not len(world.position):
+        problem = self.evaluator.problem
+        if problem.obstacles is None:
             return np.zeros(len(points))
-        places = points[:, :, np.newaxis, world.position]  # (N, k, 1, 2)
-        gaps = np.hypot(*np.moveaxis(places - world.circles[:, :2], -1, 0)) - world.circles[:, 4]
-        inside: Floats = np.sum(np.any(gaps < 0.0, axis=2), axis=1, dtype=np.float64)
+        names = problem.plant.state_names
+        poses = points[..., [names.index(name) for name in problem.obstacles.position]]
+        gaps = problem.obstacles.gaps(poses.reshape(-1, poses.shape[-1])).reshape(points.shape[:2])
+        inside: Floats = np.sum(gaps < 0.0, axis=1, dtype=np.float64)
         return inside
 
     def arrivals(self, rollouts: Rollouts) -> Floats:
@@ -120,7 +131,7 @@ class Objective:
         settings, problem, world = self.settings, self.evaluator.problem, self.evaluator.world
         on_path = settings.obstacles == "path"
         gamma = settings.gamma if on_path else 0.0
-        slack = float(np.linalg.norm(problem.tolerance[world.position[:2]])) if len(world.position) else 0.0
+        slack = float(np.hypot(*problem.tolerance[world.position[:2]])) if len(world.position) else 0.0
         return Toll(
             limits=readonly(limits * (1.0 + ROUNDING)),
             due=self.budget,

@@ -20,6 +20,8 @@ from gpsynth.optimizers import (
     CMAES,
     PSO,
     CMAESState,
+    DifferentialEvolution,
+    DifferentialEvolutionState,
     Optimizer,
     Progress,
     PSOState,
@@ -29,6 +31,7 @@ from gpsynth.optimizers import (
 )
 from gpsynth.planning.objective import Objective
 from gpsynth.planning.settings import PlanSettings
+from gpsynth.planning.weights import weighted
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import Trajectory, simulate
@@ -53,6 +56,7 @@ class Plan:
     arrival_time: float  # s, between the control periods; infinity if the goal is not reached
     clearance: float  # m, along the path, robot radius deducted; infinity without obstacles
     is_admissible: bool  # the goal is reached, and what the settings want clear of obstacles is
+    value: float  # s, the arrival time with what the weights add
     cost: float  # eq. 17 under the T+ it was found with
     evaluations: int
     history: History  # (evaluations, T+ in s) at the beginning and after every round
@@ -65,8 +69,8 @@ class Plan:
 
     @property
     def rank(self) -> tuple[bool, float]:
-        """What plans are sorted by: admissible ones before others, fast before slow."""
-        return (False, self.arrival_time) if self.is_admissible else (True, self.cost)
+        """What plans are sorted by: admissible ones before others, fast before slow, or as the weights have it."""
+        return (False, self.value) if self.is_admissible else (True, self.cost)
 
 
 def plan(  # noqa: PLR0913 names each choice as a keyword
@@ -122,6 +126,7 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
     Whoever stops asking stops the search, and has the best plan so far.
     """
     _check(problem, law, settings, initial)
+    problem = weighted(problem, settings.weights)
     evaluator = Evaluator(problem, threads=threads, margin=settings.margin)
     objective = Objective(evaluator, law, settings, budget or problem.horizon)
     optimizer = _optimizer(objective, region or default_region(problem), initial)
@@ -134,9 +139,9 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
         found = minimize(objective, optimizer, seed=seed, path=path, budget=end, limits=limits, resume=start)
         latest = _plan(objective, found, history, best)
         before = objective
-        if latest.is_admissible and latest.arrival_time < objective.budget:
+        if latest.is_admissible and latest.value < objective.budget:
             # Algorithm 1: T+ <- T_used, and with it the switching step
-            objective = replace(objective, budget=max(latest.arrival_time, problem.period))
+            objective = replace(objective, budget=max(latest.value, problem.period))
         history = (*history, (found.evaluations, objective.budget))
         best = replace(latest, evaluations=found.evaluations, history=history)
         yield best
@@ -190,6 +195,8 @@ def _optimizer(
     if settings.optimizer == "cmaes":
         first = None if x0 is None else x0[int(np.argmin(objective(x0)))]
         return CMAES(lower, upper, size=size, sigma=settings.spread, restarts=0, x0=first)
+    if settings.optimizer == "shade":
+        return DifferentialEvolution(lower, upper, size=size, x0=x0)
     swarm = PSO.clerc if settings.optimizer == "clerc" else PSO.seed
     return swarm(lower, upper, size=size, x0=x0, swarms=settings.swarms)
 
@@ -200,8 +207,8 @@ def _plan(objective: Objective, found: Result[Any, Floats], history: History, be
     particles = _particles(objective, found.state)
     rollouts = objective.rollouts(points, dwell)
     arrival, is_admissible = objective.arrivals(rollouts)[0], objective.admissible(rollouts, points)[0]
-    cost = objective.costs(rollouts, points)[0]
-    rank = (False, arrival) if is_admissible else (True, cost)
+    value, cost = objective.spent(rollouts)[0], objective.costs(rollouts, points)[0]
+    rank = (False, value) if is_admissible else (True, cost)
     if before is not None and before.rank <= rank:
         return replace(before, particles=particles)
     schedule, problem = Schedule(points[0], dwell[0]), objective.evaluator.problem
@@ -218,6 +225,7 @@ def _plan(objective: Objective, found: Result[Any, Floats], history: History, be
         arrival_time=float(arrival),
         clearance=float(rollouts.clearance[0, 0]),
         is_admissible=bool(is_admissible),
+        value=float(value) if np.isfinite(arrival) else np.inf,
         cost=float(cost),
         evaluations=found.evaluations,
         history=history,
@@ -225,9 +233,11 @@ def _plan(objective: Objective, found: Result[Any, Floats], history: History, be
     )
 
 
-def _particles(objective: Objective, state: PSOState | CMAESState) -> Particles:
+def _particles(objective: Objective, state: PSOState | DifferentialEvolutionState | CMAESState) -> Particles:
     if isinstance(state, PSOState):
         return Particles(Schedules(*objective.schedules(state.best_x)), state.best_costs)
+    if isinstance(state, DifferentialEvolutionState):
+        return Particles(Schedules(*objective.schedules(state.x)), state.costs)
     best = Schedules(*objective.schedules(state.best_x[np.newaxis]))
     return Particles(best, np.array([state.best_cost]))
 
@@ -238,6 +248,8 @@ def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
     if isinstance(state, PSOState):
         costs = objective(state.best_x)
         state, spent = rescore(state, costs), len(costs)
+    elif isinstance(state, DifferentialEvolutionState):
+        state, spent = replace(state, costs=objective(state.x)), len(state.x)
     else:
         state, spent = replace(state, best_cost=float(objective(state.best_x[np.newaxis])[0])), 1
     return replace(found.progress, state=state, evaluations=found.evaluations + spent, history=())

@@ -5,11 +5,12 @@ from math import inf
 from typing import Literal, get_args
 
 from gpsynth.arrays import shaped
-from gpsynth.checks import check_number, check_whole
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
+from gpsynth.planning.weights import Weights
 
 Clear = Literal["path", "points"]
-Method = Literal["clerc", "seed", "cmaes"]
+Method = Literal["clerc", "seed", "shade", "cmaes"]
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ class PlanSettings:
     beta: float = 0.25  # weight of the time
     gamma: float = 5.0  # weight of the obstacles
     margin: float = 0.004  # m, clearance that counts as none
-    optimizer: Method = "clerc"  # two swarms, "seed" being the paper's, or CMA-ES
+    optimizer: Method = "clerc"  # a swarm, "seed" being the paper's; differential evolution; CMA-ES
     swarms: int = 1  # side by side, sharing T+ alone; `seed` and `clerc` only
     particles: int = 64  # of each swarm
     iterations: int = 15  # in a round; the first rounds are shorter
@@ -31,6 +32,7 @@ class PlanSettings:
     spread: float = 0.05  # first step of CMA-ES, as a fraction of the range
     patience: float = 1.5  # rollouts end after so many T+, and a second
     top_speed: float = inf  # m/s: known to be the greatest, it shows sooner which rollouts cannot win
+    weights: Weights = Weights()  # of what counts beside time
     reach: float = 0.0  # distance from its point at which the next one is due at once; 0: dwell times alone
 
     def __post_init__(self) -> None:
@@ -41,14 +43,15 @@ class PlanSettings:
             check_number(f"{name} of a plan", value)
             if not 0.0 <= value < inf:
                 raise ProblemError(f"{name} of a plan must be finite and at least 0, not {value}")
+        check_kind("weights of a plan", self.weights, Weights)
         check_number("top_speed of a plan", self.top_speed)
         if not self.top_speed > 0.0:
             raise ProblemError(f"top_speed of a plan must be greater than 0, not {self.top_speed}")
         for name, choices in (("obstacles", get_args(Clear)), ("optimizer", get_args(Method))):
             if getattr(self, name) not in choices:
                 raise ProblemError(f"{name} of a plan must be one of {choices}, not {getattr(self, name)!r}")
-        if self.optimizer == "cmaes" and self.swarms > 1:
-            raise ProblemError(f"CMA-ES searches alone; swarms is {self.swarms}")
+        if self.optimizer in ("shade", "cmaes") and self.swarms > 1:
+            raise ProblemError(f"the optimizer {self.optimizer!r} searches alone; swarms is {self.swarms}")
         if self.dwell is not None:
             shortest, longest = shaped("dwell, (shortest, longest) in s,", self.dwell, (2,))
             if not 0.0 <= shortest < longest:

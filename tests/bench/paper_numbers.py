@@ -1,34 +1,29 @@
 """The numbers of Shmalko and Yamshanov beside ours, as the Markdown of docs/paper_numbers.md.
 
 `python -m tests.bench.paper_numbers` prints the bounds that the paper's limits imply, `--experiments` the paper's two
-experiments for ten seeds, and run folders of `python -m applications.rosbot demo` as arguments the plans found in them.
+experiments for ten seeds, of which `--plot FILE.png` draws T+ and cost, and run folders of
+`python -m applications.rosbot demo` as arguments the plans found in them.
 """
 
 import argparse
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from applications.rosbot.bounds import lower_bound
-from applications.rosbot.experiments import Experiment, experiment
+from applications.rosbot.figures import save_figure
 from applications.rosbot.reeds_shepp import distance
 from applications.rosbot.scenario_file import read_scenario
 from applications.rosbot.show import plan_files, read_plan, scenario_beside
 from gpsynth.arrays import Floats
-from gpsynth.evaluate import Evaluator
 from gpsynth.optimizers import PSO
-from gpsynth.planning import Objective, Plan, plan
-from gpsynth.schedule import Schedule
+from tests.bench.paper_experiments import SCENARIOS, convergence_figure, experiments, run_cases, table
 
 GOAL = (2.0, 2.0)  # m, from (0, 0) with heading 0
 LIMIT = 0.5  # m/s and rad/s
 CLAIMED = (4.5, 3.0)  # s, experiments 1 and 2
 WAYPOINTS = ((0.0, 0.0), (-0.46, -0.3), (-0.9, 0.24), (-0.37, 0.4), (-0.3, 0.64), (0.0, 1.7), (2.0, 2.0))  # m
-SEEDS = range(1, 11)
-AT_START = 0.05  # m; a point this near to the start is left at once
-SCENARIOS = Path(__file__).parents[2] / "applications" / "rosbot" / "scenarios"
 
 
 def straight() -> float:
@@ -110,7 +105,7 @@ def bounds() -> str:
         for what, how, form, least, check in rows
     )
     titles = ("limits", "fastest way", "closed form", "least time (s)", "Reeds-Shepp (s)", "4.5 s", "3 s")
-    return _table(titles, cells)
+    return table(titles, cells)
 
 
 def facts() -> str:
@@ -132,56 +127,7 @@ def facts() -> str:
             for name in ("paper", "paper_empty")
         ),
     ]
-    return _table(("quantity", "value"), rows)
-
-
-def experiments() -> str:
-    """Both experiments under both readings; the replica also with its path kept clear, and begun in one place."""
-    circles, empty = (read_scenario(SCENARIOS / f"{name}.json") for name in ("paper", "paper_empty"))
-    replica, without = experiment(circles, "paper-replica"), experiment(empty, "paper-replica")
-    cases = (
-        ("`paper`, replica", replica, ()),
-        ("`paper`, replica, path", replace(replica, settings=replica.settings.on_path()), ()),
-        ("`paper`, physical", experiment(circles, "physical"), ()),
-        ("`paper_empty`, replica", without, ()),
-        ("`paper_empty`, replica, all begin at the start", without, _resting(without)),
-        ("`paper_empty`, physical", experiment(empty, "physical"), ()),
-    )
-    titles = ("experiment", "obstacle term", "first T+ (s)", "arrive", "clear", "inside", "at start")
-    rows = ((name, *_summary(case, _plans(case, initial))) for name, case, initial in cases)
-    return _table((*titles, "arrival (s)", "clear arrival (s)"), rows)
-
-
-def _plans(case: Experiment, initial: Sequence[Schedule]) -> list[Plan]:
-    return [
-        plan(case.problem, case.law, case.settings, seed=seed, initial=initial, threads=2) for seed in SEEDS
-    ]
-
-
-def _resting(case: Experiment) -> list[Schedule]:
-    """For every particle a schedule whose points all lie at the start."""
-    count = case.settings.points
-    points = np.tile(case.problem.starts[0], (count, 1))
-    return [Schedule(points, np.zeros(count))] * case.settings.particles
-
-
-def _summary(case: Experiment, found: Sequence[Plan]) -> tuple[str, ...]:
-    arrived = [each.arrival_time for each in found if np.isfinite(each.arrival_time)]
-    clear = [each.arrival_time for each in found if each.is_free]
-    objective = Objective(Evaluator(case.problem), case.law, case.settings, case.problem.horizon)
-    points = np.array([each.schedule.points for each in found])
-    at_start = np.hypot(*np.moveaxis(points[..., :2] - case.problem.starts[0, :2], -1, 0)) < AT_START
-    counts = (
-        f"{len(arrived)} of {len(found)}",
-        f"{len(clear)}",
-        f"{np.max(objective.covered(points)):g}",
-        f"{np.mean(at_start):.0%}",
-    )
-    return (case.settings.obstacles, f"{case.problem.horizon:g}", *counts, _range(arrived), _range(clear))
-
-
-def _range(times: Sequence[float]) -> str:
-    return f"{min(times):.2f} to {max(times):.2f}" if times else "-"
+    return table(("quantity", "value"), rows)
 
 
 def plans(folders: Sequence[Path]) -> str:
@@ -193,7 +139,7 @@ def plans(folders: Sequence[Path]) -> str:
         numbers = (scenario.time_limit, claimed, saved.lower_bound, saved.arrival_time, saved.clearance)
         rows.append((f"`{scenario.name}`", saved.status, *map(_optional, numbers)))
     titles = ("scenario", "status", "time limit (s)", "paper (s)", "bound (s)", "ours (s)", "clearance (m)")
-    return _table(titles, rows)
+    return table(titles, rows)
 
 
 def _reeds_shepp(headings: Floats) -> float:
@@ -213,21 +159,21 @@ def _optional(value: float | None) -> str:
     return "-" if value is None else f"{value:.3f}"
 
 
-def _table(titles: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    return "\n".join("| " + " | ".join(row) + " |" for row in (titles, ["---"] * len(titles), *rows))
-
-
 def main() -> None:
     """Print the tables that are asked for."""
     parser = argparse.ArgumentParser(description="The numbers of the paper beside ours, as Markdown.")
     parser.add_argument(
         "--experiments", action="store_true", help="run the paper's experiments for ten seeds"
     )
+    parser.add_argument("--plot", type=Path, help="draw T+ and cost of the experiments as they run")
     parser.add_argument("folders", nargs="*", type=Path, help="run folders with plans")
     asked = parser.parse_args()
     print(bounds(), facts(), sep="\n\n")
-    if asked.experiments:
-        print("", experiments(), sep="\n")
+    if asked.experiments or asked.plot:
+        found = run_cases()
+        print("", experiments(found), sep="\n")
+        if asked.plot:
+            save_figure(convergence_figure(found), asked.plot)
     if asked.folders:
         print("", plans(asked.folders), sep="\n")
 

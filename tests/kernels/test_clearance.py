@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from gpsynth.arrays import Floats
+from gpsynth.distance_field import field_of_cells
 from gpsynth.evaluate import Evaluator, Rollouts
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
@@ -140,3 +141,70 @@ def test_what_comes_after_arrival_is_not_counted() -> None:
     assert abs(rolled.arrival[0, 0] - 0.95) < 1e-12
     assert rolled.clearance[0, 0] > 0.5
     assert rolled.exposure[0, 0] == 0.0
+
+
+def test_a_body_of_circles_turns_with_the_robot() -> None:
+    """Against the exact arcs of its circles; one that is two steps ahead bends more than the origin does."""
+    body = np.array([[0.3, 0.0, 0.1], [-0.2, 0.1, 0.15]])
+    below = 0.0
+    for seed in range(60):
+        v, omega, start, circles = _scenes(True)(seed)
+        origin, theta = _path(v, omega, start), start[2] + omega * SAMPLES
+        places = [
+            origin + np.array([a * np.cos(theta) - b * np.sin(theta), a * np.sin(theta) + b * np.cos(theta)])
+            for a, b, _ in body
+        ]
+        gaps = [_gaps(place, circles) - radius for place, (_, _, radius) in zip(places, body, strict=True)]
+        if min(gap[0] for gap in gaps) < 0.01:
+            continue
+        obstacles = Obstacles(circles, footprint=body, position=("x", "y", "theta"))
+        found, exact = _drive(v, omega, start, obstacles).clearance[0, 0], np.min(gaps)
+        sagitta = PERIOD**2 * (abs(v * omega) + 0.3 * omega**2) / 8
+        assert exact - 2.0 * sagitta - 1e-6 <= found <= exact + ABOVE + 1e-3 * sagitta
+        below = max(below, exact - found)
+    assert below > 1e-4
+
+
+def test_a_centered_circle_is_a_body_as_well() -> None:
+    for seed in range(5):
+        v, omega, start, circles = _scenes(True)(seed)
+        start[0] += 5.0
+        one, other = Obstacles(circles, radius=0.1), Obstacles(circles, footprint=np.array([[0.0, 0.0, 0.1]]))
+        assert np.array_equal(
+            _drive(v, omega, start, one).clearance, _drive(v, omega, start, other).clearance
+        )
+
+
+def test_a_distance_field_is_an_obstacle_that_is_never_farther_than_it_seems() -> None:
+    """Random cells, against the exact distance from the squares at samples of the path."""
+    short = 0.0
+    for seed in range(40):
+        rng = np.random.default_rng((seed, 7))
+        cells = rng.random((60, 60)) < 0.004
+        low = -3.0 + 0.1 * np.argwhere(cells)[:, ::-1]
+        v, omega, start = rng.uniform(-0.7, 0.7), rng.uniform(-1.0, 1.0), rng.uniform(-1.0, 1.0, 3)
+        path = _path(v, omega, start)[:, ::40].T
+        beyond = np.maximum(np.maximum(low - path[:, None], path[:, None] - low - 0.1), 0.0)
+        exact = np.min(np.hypot(beyond[..., 0], beyond[..., 1]))
+        if exact < 0.1:
+            continue
+        field = field_of_cells(cells, (-3.0, -3.0), 0.1, parts=2)
+        found = _drive(v, omega, start, Obstacles(field=field, radius=0.1)).clearance[0, 0]
+        assert found <= exact - 0.1 + 1e-6 + 4e-3 * abs(v)  # the samples are 4 ms apart
+        assert found >= exact - 0.1 - 0.06
+        short = max(short, exact - 0.1 - found)
+    assert short > 1e-4
+
+
+def test_a_field_of_one_cell_between_two_ticks_is_seen() -> None:
+    cells = np.zeros((40, 40), dtype=bool)
+    cells[20, 20] = True
+    field = field_of_cells(cells, (-0.2, -0.2), 0.01)  # the cell from (0, 0) to (0.01, 0.01)
+    rolled = _drive(1.0, 0.0, np.array([-0.15, 0.005, 0.0]), Obstacles(field=field))
+    assert rolled.clearance[0, 0] < 0.0
+
+
+def test_a_diverged_state_reads_no_memory_beside_the_field() -> None:
+    field = field_of_cells(np.eye(8, dtype=bool), (0.0, 0.0), 0.1)
+    for start in ([1e9, -1e9, 0.0], [-1e9, 1e9, 1e7]):
+        assert np.isfinite(_drive(9.0, 9.0, np.array(start), Obstacles(field=field)).clearance[0, 0])

@@ -1,20 +1,25 @@
 """The command `python -m applications.rosbot`: plans anybody can replay, exit codes, and one sentence for bad input."""
 
+import errno
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from applications.rosbot import stages
+from applications.rosbot import show, stages
 from applications.rosbot.__main__ import cli, main
 from applications.rosbot.model import unicycle, wheel_coupled
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import polar_law
 from gpsynth.law import Law
+from gpsynth.planning import PlanSettings
 from gpsynth.record import Run, read_progress
 
 SCENARIO = {
@@ -43,6 +48,25 @@ def scenario_file(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """A search that takes a fraction of a second; what is given is called when it is over."""
+
+    def search(after=lambda: None):
+        def planned(scenario, laws, **options):
+            small = PlanSettings(particles=16, iterations=8, rounds=2)
+            options["effort"] = Effort(
+                scouts=small, chasers=small, refiners=small, chased=1, refined=1, attempts=1
+            )
+            report = plan_scenario(scenario, laws, **options)
+            after()
+            return report
+
+        monkeypatch.setattr(stages, "plan_scenario", planned)
+
+    return search
 
 
 @pytest.fixture
@@ -134,27 +158,8 @@ def test_the_same_seed_gives_the_same_controls(scenario_file, law_file, tmp_path
 
 def test_a_deadline_ends_the_search_with_what_is_there(scenario_file, law_file, tmp_path):
     out = tmp_path / "out"
-    assert _run("plan", scenario_file(), "--out", out, "--law", law_file, "--deadline", "0.001") in (0, 3)
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file, "--deadline", "0.001") in (0, 4)
     assert json.loads((out / "plan.json").read_text())["ended"] == "deadline"
-
-
-def test_what_an_interrupted_search_has_found_is_written(
-    capsys, monkeypatch, scenario_file, law_file, tmp_path
-):
-    def stop(report):
-        if report.status == "planned":
-            raise KeyboardInterrupt
-
-    search = stages.plan_scenario
-    monkeypatch.setattr(
-        stages, "plan_scenario", lambda *given, **named: search(*given, **named, callback=stop)
-    )
-    out = tmp_path / "out"
-    assert _run("plan", scenario_file(), "--out", out, "--law", law_file) == 130
-    plan = json.loads((out / "plan.json").read_text())
-    assert (plan["status"], plan["ended"]) == ("planned", "interrupted")
-    _replays(plan, SCENARIO)
-    assert "interrupted" in capsys.readouterr().err
 
 
 @pytest.mark.slow
@@ -221,6 +226,139 @@ def test_an_unreachable_goal_is_3_with_the_reason(capsys, scenario_file, law_fil
     assert _run("show", out) == 0
 
 
+def test_a_time_limit_that_no_plan_can_keep_is_3_and_one_that_no_plan_was_found_for_is_4(
+    capsys, scenario_file, law_file, quick, tmp_path
+):
+    quick()
+    for limit, code, status, words in (
+        (1.0, 3, "unreachable", "too late: no plan arrives before"),
+        (2.6, 4, "not_found", "the goal may still be reachable"),  # 1 % above the bound
+    ):
+        out = tmp_path / status
+        assert _run("plan", scenario_file(time_limit=limit), "--out", out, "--law", law_file) == code
+        plan = json.loads((out / "plan.json").read_text())
+        assert plan["lower_bound"] == pytest.approx(2.576, abs=1e-3)
+        assert (plan["status"], plan["controls"], plan["certificate"]) == (status, [], None)
+        assert words in plan["reason"]
+        assert words in capsys.readouterr().out
+
+
+def test_a_plan_that_cannot_be_written_is_printed(
+    capsys, monkeypatch, scenario_file, law_file, quick, tmp_path
+):
+    def full(descriptor):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    quick(after=lambda: monkeypatch.setattr(os, "fsync", full))
+    assert _run("plan", scenario_file(), "--out", tmp_path / "out", "--law", law_file) == 2
+    captured = capsys.readouterr()
+    assert captured.err.count("\n") == 1
+    assert (
+        "plan.json cannot be written: No space left on device; what was found is on standard output"
+        in captured.err
+    )
+    _replays(json.loads(captured.out), SCENARIO)
+    assert not (tmp_path / "out" / "plan.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("place", "name", "error", "what", "gone"),
+    [
+        (show, "save_figure", RuntimeError("no font"), "its picture is not: no font", "plan.png"),
+        (show, "draw_plan", MemoryError(), "its picture is not: MemoryError", "plan.png"),
+        (stages, "write_bytes", OSError(errno.ENOSPC, "full"), "its scenario is not: ", "scenario.json"),
+        (Run, "log", OSError(errno.ENOSPC, "full"), "its log is not: ", None),
+    ],
+)
+def test_a_plan_is_kept_whatever_fails_after_it(
+    capsys, monkeypatch, scenario_file, law_file, quick, tmp_path, place, name, error, what, gone
+):
+    def fails(*_, **__):
+        raise error
+
+    quick()
+    monkeypatch.setattr(place, name, fails)
+    out = tmp_path / "out"
+    out.mkdir()
+    if gone:
+        (out / gone).write_text("of an earlier plan")
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file) == 0
+    captured = capsys.readouterr()
+    assert captured.err.startswith(f"warning: {out / 'plan.json'} is written, {what}")
+    assert captured.err.count("\n") == 1
+    assert "planned" in captured.out
+    _replays(json.loads((out / "plan.json").read_text()), SCENARIO)
+    assert gone is None or not (out / gone).exists()
+
+
+def _interrupted(monkeypatch, when):
+    """Ctrl-C at the first report of which `when` holds."""
+
+    def note(report):
+        if when(report):
+            signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(stages, "plan_scenario", partial(plan_scenario, callback=note))
+
+
+def test_ctrl_c_keeps_the_best_plan_so_far(capsys, monkeypatch, scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    _interrupted(monkeypatch, lambda report: len(report.history) == 2)
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file) == 130
+    plan = json.loads((out / "plan.json").read_text())
+    assert (plan["status"], plan["ended"]) == ("planned", "interrupted")
+    assert plan["evaluations"] < 10_000
+    _replays(plan, SCENARIO)
+    captured = capsys.readouterr()
+    assert "planned" in captured.out
+    assert "interrupted" in captured.err
+    assert (out / "plan.png").exists()
+
+
+def test_ctrl_c_while_a_plan_is_written_comes_too_late(monkeypatch, scenario_file, law_file, quick, tmp_path):
+    replace, pressed = os.replace, []
+
+    def interrupted(self, target):
+        if not pressed and target.name == "plan.json":
+            pressed.append(True)
+            raise KeyboardInterrupt
+        replace(self, target)
+
+    quick()
+    monkeypatch.setattr(Path, "replace", interrupted)
+    assert _run("plan", scenario_file(), "--out", tmp_path / "out", "--law", law_file) == 130
+    _replays(json.loads((tmp_path / "out" / "plan.json").read_text()), SCENARIO)
+
+
+@pytest.mark.slow
+def test_places_are_passed_on_the_way(scenario_file, law_file, tmp_path):
+    out, places = tmp_path / "out", ("--via", "0.3", "0.8", "0.1", "--via", "-0.2", "0.2", "0.1")
+    assert _run("plan", scenario_file(), "--out", out, "--law", law_file, *places) == 0
+    plan = json.loads((out / "plan.json").read_text())
+    assert plan["via"] == [[0.3, 0.8, 0.1], [-0.2, 0.2, 0.1]]
+    path = np.array(plan["trajectory"])
+    # the trajectory has a pose a period, in which the robot moves 0.025 m at most
+    first = np.hypot(path[:, 1] - 0.3, path[:, 2] - 0.8) <= 0.1 + 0.0125
+    then = np.hypot(path[:, 1] + 0.2, path[:, 2] - 0.2) <= 0.1 + 0.0125
+    assert np.argmax(first) < len(path) - np.argmax(then[::-1])
+    assert np.any(first)
+    assert np.any(then)
+
+
+def test_a_place_out_of_bounds_is_one_sentence_and_leaves_nothing(capsys, scenario_file, law_file, tmp_path):
+    out = tmp_path / "out"
+    given = ("plan", scenario_file(), "--out", out, "--law", law_file, "--via", "9", "0", "0.1")
+    _fails(capsys, *given, sentence=["via-point 0 (9, 0) lies outside the bounds"])
+    assert not out.exists()
+
+
+def test_ctrl_c_before_a_plan_leaves_none(monkeypatch, scenario_file, law_file, tmp_path):
+    _interrupted(monkeypatch, lambda report: report.status == "not_found")
+    late = scenario_file(time_limit=2.6)
+    assert _run("plan", late, "--out", tmp_path / "out", "--law", law_file) == 130
+    assert not (tmp_path / "out" / "plan.json").exists()
+
+
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
@@ -233,6 +371,20 @@ def test_an_unreachable_goal_is_3_with_the_reason(capsys, scenario_file, law_fil
         ({"limits": {"v": [-0.5, 0.5]}}, ["limits.omega", "missing"]),
         ({"obstacles": [{**CIRCLE, "x": 0.0, "y": 0.1}]}, ["start", "obstacles[0]"]),
         ({"start": [9.0, 0.0, 0.0]}, ["start", "outside the bounds"]),
+        ({"goal": [0.0, 3.1, 0.0]}, ["goal (0, 3.1)", "outside the bounds"]),
+        ({"bounds": {"x": [-3.0, 3.0], "y": [3.0, -3.0]}}, ["bounds of y are [3, -3]", "less than"]),
+        (
+            {"limits": {"v": [-0.5, 0.5], "omega": [0.5, 0.5]}},
+            ["limits of omega are [0.5, 0.5]", "less than"],
+        ),
+        ({"obstacles": [{**CIRCLE, "r": -0.2}]}, ["obstacles[0] has radius -0.2", "at least 0"]),
+        ({"robot": {"footprint": {"type": "circle", "radius": -0.1}}}, ["the robot's radius is -0.1"]),
+        ({"obstacles": [CIRCLE, {**CIRCLE, "vx": math.nan}]}, ["obstacles[1].vx is nan", "finite"]),
+        ({"obstacles": [{**CIRCLE, "vy": -math.inf}]}, ["obstacles[0].vy is -inf", "finite"]),
+        (
+            {"text": json.dumps({**SCENARIO, "obstacles": [{**CIRCLE, "vx": 7.7}]}).replace("7.7", "1e999")},
+            ["finite"],
+        ),
         ({"format": "rosbot-scenario/2"}, ["format", "rosbot-scenario/1"]),
         ({"time_limit": 0.0}, ["time_limit"]),
     ],
@@ -257,6 +409,28 @@ def test_a_damaged_law_is_one_sentence_and_leaves_nothing(capsys, scenario_file,
     law_file.write_text(law_file.read_text().replace("0x1.", "0x0.", 1))
     arguments = ("plan", scenario_file(), "--out", tmp_path / "out", "--law", law_file)
     _fails(capsys, *arguments, sentence=["some_law.json", "hash"])
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"), [(None, "does not exist"), ("u = x", "is not JSON"), ("{}", "law")]
+)
+def test_a_law_that_is_none_is_one_sentence_and_leaves_nothing(
+    capsys, scenario_file, tmp_path, content, sentence
+):
+    path = tmp_path / "no_law.json"
+    if content is not None:
+        path.write_text(content)
+    _fails(
+        capsys,
+        "plan",
+        scenario_file(),
+        "--out",
+        tmp_path / "out",
+        "--law",
+        path,
+        sentence=["no_law.json", sentence],
+    )
     assert not (tmp_path / "out").exists()
 
 

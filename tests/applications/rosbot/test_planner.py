@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from applications.rosbot import planner
+from applications.rosbot.bounds import lower_bound
 from applications.rosbot.following import nearest_time
 from applications.rosbot.guides import direct_guides, guides_along
 from applications.rosbot.model import unicycle, wheel_coupled
@@ -41,6 +42,11 @@ def scene(**changes) -> Scenario:
         **{"start": [0.0, 0.0, 0.0], "goal": [3.0, 0.0, 0.0], "circles": [[1.5, 0.05, 0.0, 0.0, 0.3]]}
         | changes
     )
+
+
+def hurried() -> Scenario:
+    """The scene with less time than the control period lets a plan have, though the bound does not forbid it."""
+    return scene(time_limit=lower_bound(scene()) + 0.01)
 
 
 @pytest.fixture(name="report", scope="module")
@@ -142,7 +148,24 @@ def test_an_interrupted_search_gives_the_best_plan_so_far():
     assert stopped.replay.solves
     wanted = "not_found"
     with pytest.raises(KeyboardInterrupt):
-        plan_scenario(scene(time_limit=3.0), [law()], effort=QUICK, callback=interrupt)
+        plan_scenario(hurried(), [law()], effort=QUICK, callback=interrupt)
+
+
+def test_without_a_plan_the_reason_says_what_has_ended_the_search():
+    for ended, words, options in (
+        ("complete", "rollouts; ", {"effort": replace(QUICK, attempts=1)}),
+        ("rollouts", "rollouts, all that were allowed; ", {"effort": replace(QUICK, rollouts=100)}),
+        ("deadline", "rollouts, when the deadline came; ", {"effort": replace(QUICK, deadline=0.0)}),
+        (
+            "callback",
+            "rollouts, when the search was ended; ",
+            {"effort": QUICK, "callback": lambda report: True},
+        ),
+    ):
+        report = plan_scenario(hurried(), [law()], **options)
+        assert (report.status, report.ended) == ("not_found", ended)
+        assert f"no collision-free plan within {hurried().time_limit:g} s was found in" in report.reason
+        assert f"{report.evaluations} {words}the goal may still be reachable" in report.reason
 
 
 def test_public_scenarios_are_solved_or_unreachable(public):
@@ -150,8 +173,19 @@ def test_public_scenarios_are_solved_or_unreachable(public):
     assert report.status == ("planned" if public.expect_feasible else "unreachable")
     if report.replay is not None:
         assert report.replay.solves
+        _proves(report)
     else:
+        assert report.certificate is None
         assert "shut the goal off" in report.reason
+
+
+def _proves(report):
+    """The certificate clears the plan, and is within what the replay's samples may miss."""
+    proof, seen = report.certificate, report.replay.clearance
+    assert proof.is_clear
+    assert proof.clearance <= seen
+    assert seen == np.inf or seen - proof.clearance <= 2.5e-4  # half of 1 ms at 0.5 m/s
+    assert plan_document(report)["certificate"]["room"] == proof.room
 
 
 @pytest.mark.parametrize("direction", [1.0, -1.0])
@@ -175,10 +209,12 @@ def test_a_moving_obstacle_is_met_where_it_then_is():
 def test_an_unreachable_goal_is_told_from_one_that_was_not_found():
     ring = [[3.0 + 0.6 * np.cos(a), 0.6 * np.sin(a), 0.0, 0.0, 0.2] for a in np.linspace(0.0, 6.2, 12)]
     unreachable = plan_scenario(scene(circles=ring), [law()], effort=QUICK)
-    too_late = plan_scenario(scene(time_limit=3.0), [law()], effort=replace(QUICK, attempts=1))
+    too_late = plan_scenario(scene(time_limit=3.0), [law()], effort=QUICK)
+    not_found = plan_scenario(hurried(), [law()], effort=replace(QUICK, attempts=1))
     assert (unreachable.status, unreachable.evaluations) == ("unreachable", 0)
-    assert too_late.status == "not_found"
-    assert "no collision-free plan within 3 s" in too_late.reason
+    assert (too_late.status, too_late.evaluations) == ("unreachable", 0)
+    assert "too late: no plan arrives before 5.9 s, and the time limit is 3 s" in too_late.reason
+    assert (not_found.status, not_found.evaluations > 0) == ("not_found", True)
 
 
 def test_a_start_at_the_goal_has_arrived():

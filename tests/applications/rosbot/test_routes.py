@@ -6,6 +6,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from applications.rosbot.routes import routes, shortest_routes
 from applications.rosbot.scenario import Scenario
+from gpsynth.seeds import stream
 
 OPEN = np.array([-np.inf, np.inf, -np.inf, np.inf])
 
@@ -61,6 +62,24 @@ def test_public_routes_are_free_and_of_distinct_classes(public):
 
 def test_as_many_classes_are_found_as_are_known(public, reference):
     assert len(routes(public)) >= reference["n_homotopy"]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_of_many_discs_those_far_off_change_nothing(seed, monkeypatch):
+    rng = stream(seed)
+    places = rng.uniform(-8.0, 8.0, (150, 2))
+    discs = np.column_stack([places, rng.uniform(0.2, 0.6, 150)])
+    start, goal = np.array([-2.0, 0.0]), np.array([2.0, 0.0])
+    discs = discs[np.all([np.hypot(*(places - end).T) > 0.7 for end in (start, goal)], axis=0)]
+    found = shortest_routes(start, goal, discs, OPEN, count=5)
+    monkeypatch.setattr("applications.rosbot.routes.FEW", len(discs))
+    expected = shortest_routes(start, goal, discs, OPEN, count=5)
+    assert len(found) == len(expected) > 0
+    for one, other in zip(found, expected, strict=True):
+        assert one.length == pytest.approx(other.length, abs=1e-9)  # 1e-12 m is added to every edge
+        ways = np.linspace(0.0, one.length, 50)
+        apart = np.hypot(*(one.poses(ways) - other.poses(ways))[:, :2].T)
+        assert np.max(apart) < 0.01  # arcs are drawn as chords from touching point to touching point
 
 
 def test_one_disc_in_the_way_gives_two_mirrored_routes():

@@ -67,10 +67,10 @@ def test_the_papers_scenarios_are_read(name, obstacles, time_limit):
     ("place", "value", "sentence"),
     [
         ("format", "rosbot-scenario/2", 'format is "rosbot-scenario/2"; expected rosbot-scenario/1'),
-        ("model", "car", 'model is "car"; expected unicycle'),
+        ("model", "boat", 'model is "boat"; expected unicycle, dynamic_unicycle, car'),
         ("colour", "red", 'colour is "red"; the format has no such field'),
         ("obstacles.1.z", 3, "obstacles[1].z is 3; the format has no such field"),
-        ("obstacles.0.type", "square", 'obstacles[0].type is "square"; expected circle'),
+        ("obstacles.0.type", "square", 'obstacles[0].type is "square"; expected circle, segment, polygon'),
         ("obstacles.0.r", "wide", 'obstacles[0].r is "wide"; expected float, got str'),
         ("obstacles.0.r", -0.35, "obstacles[0] has radius -0.35; expected at least 0"),
         ("obstacles.0.x", True, "obstacles[0].x is true; expected float, got bool"),
