@@ -137,6 +137,12 @@ def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
     assert now.evaluations < 300
 
 
+@pytest.mark.parametrize("wrong", [{"deadline": np.nan}, {"deadline": 0.0}, {"rollouts": -1}])
+def test_an_effort_allows_something(wrong):
+    with pytest.raises(ScenarioError, match="expected more than 0"):
+        Effort(**wrong)
+
+
 def test_an_interrupted_search_gives_the_best_plan_so_far():
     def interrupt(report):
         if report.status == wanted:

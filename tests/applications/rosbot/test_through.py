@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import PERIOD, Effort, problem_of
+from applications.rosbot.planner import PERIOD, Effort, plan_scenario, problem_of
 from applications.rosbot.polar_law import SATURATING, polar_law
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
@@ -91,3 +91,11 @@ def test_a_car_passes_places_and_a_robot_with_lags_is_refused():
 def test_places_that_make_no_sense_are_one_sentence(via, sentence):
     with pytest.raises(ScenarioError, match=sentence):
         plan_through(scene(bounds=[-5.0, 5.0, -5.0, 5.0]), via, law(), effort=QUICK)
+
+
+def test_what_is_allowed_is_for_all_legs():
+    few = Effort(rollouts=3 * 288)
+    report = plan_through(scene(), VIA, law(), seed=1, effort=few)
+    alone = plan_scenario(scene(), [law()], seed=1, effort=few)
+    assert report.ended == "rollouts"
+    assert few.rollouts <= report.evaluations <= alone.evaluations  # a round is not broken off
