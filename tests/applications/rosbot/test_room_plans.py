@@ -122,6 +122,16 @@ def test_a_run_folder_keeps_the_map(tmp_path):
     assert (tmp_path / "out" / "plan.png").exists()
 
 
+def test_a_drive_keeps_the_map_too(tmp_path):
+    short = tmp_path / "short.json"
+    short.write_text(json.dumps(json.loads(OFFICE.read_text()) | {"time_limit": 0.1}))
+    for name in ("office.yaml", "office.png"):
+        (tmp_path / name).write_bytes(OFFICE.with_name(name).read_bytes())
+    assert main(["drive", str(short), "--out", str(tmp_path / "out")]) == 4
+    again = read_scenario(tmp_path / "out" / "scenario.json")
+    assert np.array_equal(again.room.cells, read_scenario(short).room.cells)
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
