@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,3 +57,16 @@ def test_a_start_that_touches_an_obstacle_is_free():
 def test_what_is_wrong_is_named_with_its_value(wrong, sentence):
     with pytest.raises(ScenarioError, match=sentence):
         Scenario(**{"start": START, "goal": GOAL, "bounds": BOUNDS} | wrong)
+
+
+@pytest.mark.parametrize(("name", "what"), [("speed_limits", "v"), ("turn_limits", "omega")])
+def test_a_robot_that_hardly_moves_is_refused(name, what):
+    with pytest.raises(
+        ScenarioError, match=f"limits of {what} are .*; expected one of at least 1e-06 in size"
+    ):
+        Scenario(START, GOAL, **{name: (-1e-310, 1e-310)})
+    Scenario(START, GOAL, **{name: (-1e-6, 1e-310)})
+
+
+def test_a_point_is_a_robot_whose_scenario_can_be_changed():
+    assert replace(Scenario(START, GOAL, radius=0.0), start=GOAL).radius == 0.0
