@@ -5,12 +5,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from applications.rosbot.scenario import Scenario
+from applications.rosbot.gaps import gaps_at, gaps_to_room
+from applications.rosbot.scenario import MOST, Scenario
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ScenarioError
 
 Flags = npt.NDArray[np.bool_]
+
+APART = 1e-9  # m, between a robot that overlaps something and what is made of it
 
 
 @dataclass(frozen=True)
@@ -45,24 +48,36 @@ class Sensor:
 
 
 def moved(circles: Floats, time: float) -> Floats:
-    """The circles (c, 5) after a time (s)."""
+    """The circles (c, 5) after a time (s); one that has left what a scenario may reach is at its edge for good."""
     later = circles.copy()
-    later[:, :2] += time * later[:, 2:4]
+    later[:, :2] = np.clip(later[:, :2] + time * later[:, 2:4], -MOST, MOST)
     return later
 
 
 def scene_ahead(scenario: Scenario, circles: Floats, pose: Floats, delay: float) -> Scenario:
     """The scenario as it will be after a delay (s): from a pose (3,) there, with the circles (c, 5) moved on.
 
-    A circle that the robot would overlap is shrunk until it does not, and a pose out of bounds is moved inside: where
-    it should not be it is all the same, and has to leave.
+    A circle that the robot would overlap is shrunk until it does not, a robot that would overlap the room is thinned,
+    and a pose out of bounds is moved inside: where it should not be it is all the same, and has to leave.
     """
     later = moved(circles, delay)
     low, high = scenario.bounds.reshape(2, 2).T
     start = np.append(np.clip(pose[:2], low, high), np.remainder(pose[2] + np.pi, 2.0 * np.pi) - np.pi)
-    gap = np.hypot(*(later[:, :2] - start[:2]).T) * (1.0 - 1e-9) - scenario.radius
+    points = np.column_stack([later[:, :4], np.zeros(len(later))])
+    gap = gaps_at(scenario.body, points, start) - APART
     later[:, 4] = np.minimum(later[:, 4], gap)
-    return replace(scenario, start=start, circles=later[gap >= 0.0])
+    return replace(_beside_room(scenario, start), start=start, circles=later[gap >= 0.0])
+
+
+def _beside_room(scenario: Scenario, start: Floats) -> Scenario:
+    """The scenario with a body so thin that it is free at a pose (3,); without its room where none is."""
+    if scenario.room is None:
+        return scenario
+    overlap = APART - float(gaps_to_room(scenario.body, scenario.room, start[np.newaxis])[0])
+    if overlap <= APART:
+        return scenario
+    thin = scenario.body - [0.0, 0.0, overlap]
+    return replace(scenario, body=thin) if np.all(thin[:, 2] >= 0.0) else replace(scenario, room=None)
 
 
 def _moves(circles: Floats) -> Flags:

@@ -8,8 +8,10 @@ import numpy.typing as npt
 
 from applications.rosbot.certificate import certify
 from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
+from applications.rosbot.reachability import reachability
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
+from applications.rosbot.sensing import moved
 from applications.rosbot.swarms import Effort
 from applications.rosbot.vehicles import steered
 from gpsynth.arrays import Floats
@@ -67,7 +69,10 @@ def plan_through(
             raise KeyboardInterrupt
         if found.plan is None:
             where = f"via-point {number}" if number < len(through) else "the goal"
-            return replace(report, status=found.status, reason=f"on the way to {where}: {found.reason}")
+            status, reason = found.status, f"on the way to {where}: {found.reason}"
+            if number and reachability(leg).status != "unreachable":
+                status = "not_found"  # too late is only what the legs so far have left no time for
+            return replace(report, status=status, reason=reason, plan=None, law=None)
         legs.append(_leg(found, goal))
         now = _later(now, legs[-1])
         report = replace(report, plan=found.plan, law=found.law)
@@ -119,8 +124,7 @@ def _leg(found: PlanReport, goal: Floats) -> _Leg:
 def _later(scenario: Scenario, leg: _Leg) -> Scenario:
     """What is left after a leg: the robot where it is then, circles where they are, less time."""
     elapsed = PERIOD * len(leg.path.u)
-    circles = scenario.circles.copy()
-    circles[:, :2] += elapsed * circles[:, 2:4]
+    circles = moved(scenario.circles, elapsed)
     left = max(scenario.time_limit - elapsed, PERIOD)
     return replace(scenario, start=leg.path.x[-1], circles=circles, time_limit=left)
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from applications.rosbot.room import Room
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Sensor, scene_ahead
 from gpsynth.errors import ScenarioError
@@ -49,3 +50,28 @@ def test_a_circle_that_the_robot_overlaps_is_shrunk_and_one_around_its_center_le
 def test_a_pose_out_of_bounds_is_moved_inside():
     scene = scene_ahead(room(bounds=[-1.0, 7.0, -1.0, 1.0]), np.empty((0, 5)), np.array([0.0, 1.1, 0.0]), 0.1)
     assert scene.start.tolist() == [0.0, 1.0, 0.0]
+
+
+def test_a_circle_that_a_part_of_the_body_overlaps_is_shrunk():
+    ends = [[-0.2, 0.0, 0.2], [0.2, 0.0, 0.2]]
+    scene = scene_ahead(room(body=ends), np.array([NEAR]), np.array([1.45, 0.0, 0.0]), 0.0)
+    assert scene.circles[0, 4] == pytest.approx(2.0 - 1.65 - 0.2)
+
+
+@pytest.mark.parametrize(
+    ("x", "radius", "is_there"),
+    [(4.7, 0.15, True), (4.9, 0.1, True), (5.0, 0.0, False), (5.5, 0.15, False)],
+)
+def test_a_robot_that_overlaps_the_room_is_thinned(x, radius, is_there):
+    block = Room(polygons=(np.array([[5.0, -1.0], [6.0, -1.0], [6.0, 1.0], [5.0, 1.0]]),))
+    scene = scene_ahead(
+        room(room=block, goal=[4.0, 0.0, 0.0]), np.empty((0, 5)), np.array([x, 0.0, 0.0]), 0.0
+    )
+    assert (scene.room is not None) == is_there
+    if is_there:
+        assert scene.radius == pytest.approx(radius, abs=1e-8)
+
+
+def test_a_circle_flies_off_no_farther_than_a_scenario_reaches():
+    scene = scene_ahead(room(), np.array([[9999.0, 2.0, 3.0, 0.5, 0.2]]), np.zeros(3), 2.0)
+    assert scene.circles.tolist() == [[1e4, 3.0, 3.0, 0.5, 0.2]]

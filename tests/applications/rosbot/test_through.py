@@ -91,3 +91,16 @@ def test_a_car_passes_places_and_a_robot_with_lags_is_refused():
 def test_places_that_make_no_sense_are_one_sentence(via, sentence):
     with pytest.raises(ScenarioError, match=sentence):
         plan_through(scene(bounds=[-5.0, 5.0, -5.0, 5.0]), via, law(), effort=QUICK)
+
+
+def test_too_little_time_after_a_leg_proves_nothing():
+    late = plan_through(scene(circles=[], time_limit=9.0), [[2.0, 1.5, 0.05]], law(), effort=QUICK)
+    assert (late.status, late.plan) == ("not_found", None)
+    assert late.reason.startswith("on the way to the goal: too late")
+    shut = scene(circles=[[3.0, 0.0, 0.0, 0.0, 0.3]])
+    assert plan_through(shut, [[1.0, 0.0, 0.1]], law(), effort=QUICK).status == "unreachable"
+
+
+def test_a_circle_may_fly_off_on_the_way():
+    far = scene(circles=[[9e3, 0.0, 1e3, 0.0, 0.2]])
+    assert plan_through(far, [[1.0, 0.0, 0.1]], law(), effort=QUICK).status == "planned"
