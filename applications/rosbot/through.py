@@ -10,7 +10,7 @@ from applications.rosbot.certificate import certify
 from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
 from applications.rosbot.reachability import reachability
 from applications.rosbot.replay import replay
-from applications.rosbot.scenario import Scenario
+from applications.rosbot.scenario import MOST, Scenario
 from applications.rosbot.sensing import moved
 from applications.rosbot.swarms import Effort
 from applications.rosbot.vehicles import steered
@@ -90,6 +90,10 @@ def check_via(scenario: Scenario, via: npt.ArrayLike) -> Floats:
         )
     low, high = scenario.bounds[[0, 2]], scenario.bounds[[1, 3]]
     for number, (x, y, tolerance) in enumerate(places):
+        if np.any(np.abs(places[number]) > MOST):
+            raise ScenarioError(
+                f"via-point {number} is {places[number].tolist()}; expected numbers within ±{MOST:g}"
+            )
         if not tolerance > 0.0:
             raise ScenarioError(f"via-point {number} has tolerance {tolerance:g} m; expected more than 0")
         if np.any((places[number, :2] < low) | (places[number, :2] > high)):
