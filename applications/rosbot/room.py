@@ -30,8 +30,8 @@ class Room:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "cells", frozen(np.asarray(self.cells, dtype=np.bool_)))
-        object.__setattr__(self, "polygons", tuple(frozen(np.asarray(each)) for each in self.polygons))
-        object.__setattr__(self, "segments", frozen(np.asarray(self.segments).reshape(-1, 4)))
+        object.__setattr__(self, "polygons", tuple(map(_numbers, self.polygons)))
+        object.__setattr__(self, "segments", frozen(_numbers(self.segments).reshape(-1, 4)))
         if not (self.cells.any() or self.polygons or len(self.segments)):
             raise ScenarioError(
                 "the room is empty: its map has no occupied cell, and there is nothing else in it"
@@ -130,6 +130,10 @@ class Room:
 @lru_cache(maxsize=2)  # a loop asks for the field of one room again and again
 def _field(room: Room, spacing: float, low: tuple[float, ...], high: tuple[float, ...]) -> DistanceField:
     return room.grid(spacing, np.array(low), np.array(high))
+
+
+def _numbers(values: Floats) -> Floats:
+    return frozen(np.asarray(values, dtype=np.float64))
 
 
 def _check_size(box: Floats, width: float) -> None:

@@ -14,6 +14,7 @@ from gpsynth.errors import ScenarioError
 
 MOST = 1e4  # m, s: what is larger is a slip of the pen, and no plan for it ends
 FASTEST = 100.0  # m/s, rad/s
+SLOWEST = 1e-6  # m/s, rad/s: with less no plan comes to its end within MOST
 MODELS = ("unicycle", "dynamic_unicycle", "car")
 FINE, COARSE = (
     0.01,
@@ -92,6 +93,11 @@ class Scenario:
         """Whether the robot is a disc around its origin."""
         return len(self.body) == 1 and not np.any(self.body[:, :2])
 
+    @property
+    def covers_origin(self) -> bool:
+        """Whether the origin of the robot's frame is part of its body, so that it must not be in an obstacle."""
+        return bool(np.any(np.hypot(self.body[:, 0], self.body[:, 1]) <= self.body[:, 2]))
+
     @cached_property
     def field(self) -> DistanceField | None:
         """The distance field of the room; start, goal and circles lie within its grid."""
@@ -131,6 +137,12 @@ def _check_numbers(scenario: Scenario) -> None:
     for name, (low, high) in pairs.items():
         if not low < high:
             raise ScenarioError(f"{name} are [{low:g}, {high:g}]; the first must be less than the second")
+    for name in ("limits of v", "limits of omega"):
+        low, high = pairs[name]
+        if max(-low, high) < SLOWEST:
+            raise ScenarioError(
+                f"{name} are [{low:g}, {high:g}]; expected one of at least {SLOWEST:g} in size"
+            )
 
 
 def _check_model(scenario: Scenario) -> None:
@@ -148,9 +160,9 @@ def _check_model(scenario: Scenario) -> None:
 
 def _check_footprint(footprint: Floats) -> None:
     for index, (x, y, radius) in enumerate(footprint):
-        if not (max(abs(x), abs(y)) <= MOST and 0.0 < radius <= MOST):
+        if not (max(abs(x), abs(y)) <= MOST and 0.0 <= radius <= MOST):
             raise ScenarioError(
-                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius above 0"
+                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius of at least 0"
             )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from applications.rosbot.gaps import gaps_at, gaps_to_room
-from applications.rosbot.scenario import Scenario
+from applications.rosbot.scenario import MOST, Scenario
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ScenarioError
@@ -48,9 +48,9 @@ class Sensor:
 
 
 def moved(circles: Floats, time: float) -> Floats:
-    """The circles (c, 5) after a time (s)."""
+    """The circles (c, 5) after a time (s); one that has left what a scenario may reach is at its edge for good."""
     later = circles.copy()
-    later[:, :2] += time * later[:, 2:4]
+    later[:, :2] = np.clip(later[:, :2] + time * later[:, 2:4], -MOST, MOST)
     return later
 
 

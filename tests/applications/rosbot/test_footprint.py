@@ -51,3 +51,10 @@ def test_a_scenario_takes_a_body_and_checks_it():
         Scenario(start, goal, footprint=body, circles=wall)
     with pytest.raises(ScenarioError, match=r"circle 1 of the robot is \[0, 0, -1\]"):
         Scenario(start, goal, footprint=np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]))
+
+
+@pytest.mark.parametrize("thin", [1e-12, 1e-3])
+def test_a_thin_rectangle_takes_no_longer(thin):
+    circles = rectangle_circles(thin, 1.0)
+    assert len(circles) == 17
+    assert np.all(circles[:, 2] <= 0.5 * thin + 0.03)

@@ -321,3 +321,9 @@ def test_schedules_repeat_the_guides_with_noise():
     assert np.array_equal(schedules[1].points, along(guides[1], 4).points)
     assert not np.array_equal(schedules[2].points, schedules[0].points)
     assert np.array_equal(nearby(schedules[0], 3, 0.1, stream(2))[0].points, schedules[0].points)
+
+
+@pytest.mark.parametrize("name", ["deadline", "rollouts"])
+def test_an_effort_is_bounded_by_numbers(name):
+    with pytest.raises(ScenarioError, match=f"{name} of an effort is nan; expected at least 0"):
+        Effort(**{name: np.nan})

@@ -72,3 +72,8 @@ def test_nothing_is_left_of_a_room_whose_wall_is_at_the_robot_s_center():
         room(room=block, start=[-1.0, 0.0, 0.0]), np.empty((0, 5)), np.array([1.0, 0.0, 0.0]), 0.1
     )
     assert (scene.room, scene.radius) == (None, 0.15)
+
+
+def test_a_circle_flies_off_no_farther_than_a_scenario_reaches():
+    scene = scene_ahead(room(), np.array([[9999.0, 2.0, 3.0, 0.5, 0.2]]), np.zeros(3), 2.0)
+    assert scene.circles.tolist() == [[1e4, 3.0, 3.0, 0.5, 0.2]]
