@@ -1,11 +1,13 @@
 """`python -m tests.bench.plan_laws [FOLDER ...]`: what laws are worth to plans, beside how fast they settle.
 
 The laws: the one that ships, the polar laws, and those of the front that `python -m applications.rosbot synthesize`
-left in each folder. "training" is the worth (`gpsynth.planning.worth`) in generated scenarios, "unseen" in others of
-the same kinds; "public" is the mean of T_ref / T over the public scenarios and the seeds, one search of 9600 rollouts
-each, 0 without a plan (`tests.bench.plan_ablation`). "arrives" counts arrivals from 1000 starts within 3 m, "of the
-least time" is their median over the shortest Reeds-Shepp path: a stabilizer's quality, which says little about that of
-its plans.
+left in each folder, as far as they arrive from the most unseen starts. "training" is the worth
+(`gpsynth.planning.worth`) in generated scenarios, "unseen" in others of the same kinds; "public" is the mean of
+T_ref / T over the public scenarios and the seeds, one search of 9600 rollouts each, 0 without a plan
+(`tests.bench.plan_ablation`). "cut" is how deep the first schedules, which lie along guides, lead into obstacles, the
+best of each training scenario that has some: how badly a law follows points that move. "arrives" counts arrivals from
+1000 starts within 3 m, "of the least time" is their median over the shortest Reeds-Shepp path: a stabilizer's quality,
+which says little about that of its plans.
 """
 
 import argparse
@@ -23,7 +25,9 @@ from applications.rosbot.training import plan_worth, training_scenarios
 from gpsynth.evaluate import Evaluator
 from gpsynth.files import read_json
 from gpsynth.law import Law
+from gpsynth.planning import Objective
 from gpsynth.planning.worth import Worth
+from gpsynth.schedule import Schedules
 from gpsynth.seeds import stream
 from tests.bench.measure import machine, pin
 from tests.bench.plan_ablation import PERIOD, Variant
@@ -40,7 +44,9 @@ def laws_of(folders: list[Path]) -> Iterator[tuple[str, Law]]:
     for name, gains in (("saturating", SATURATING), ("hotter", HOT), ("from point to point", SETTLING)):
         yield f"polar, {name}", polar_law(unicycle(), gains)
     for folder in folders:
-        for entry in read_json(folder / "front.json")["laws"]:
+        front = read_json(folder / "front.json")["laws"]
+        most = max(entry["reached"] for entry in front)
+        for entry in (entry for entry in front if entry["reached"] == most):
             yield f"{folder.name}, size {entry['complexity']}", Law.from_dict(entry["law"])
 
 
@@ -52,6 +58,20 @@ def settling(law: Law) -> tuple[int, float]:
     there = np.isfinite(arrival)
     least = distance(np.zeros(3), starts[there], RADIUS) / SPEED
     return int(there.sum()), float(np.median(arrival[there] / least))
+
+
+def first_cut(law: Law, worth: Worth) -> float:
+    """How deep (cm) the best of the first schedules leads into an obstacle, the mean over tasks that have any."""
+    depths = []
+    for task in worth.tasks:
+        if task.problem.obstacles is not None and len(task.problem.obstacles.circles):
+            horizon = task.budget or task.problem.horizon
+            objective = Objective(Evaluator(task.problem), law, worth.settings, horizon)
+            first = (
+                Schedules.of(list(task.initial)) if not isinstance(task.initial, Schedules) else task.initial
+            )
+            depths.append(max(0.0, -float(objective.rollouts(first.points, first.dwell).clearance.max())))
+    return 100.0 * float(np.mean(depths))
 
 
 def public_worth(law: Law, known: list[Case], seeds: int) -> tuple[int, float]:
@@ -72,7 +92,7 @@ def row(name: str, law: Law, worths: tuple[Worth, Worth], known: list[Case], see
     arrives, least = settling(law)
     return (
         f"| {name} | {training:.3f} | {unseen:.3f} | {public:.3f} | {solved} of {len(known) * seeds} "
-        f"| {arrives} | {least:.3f} | {law.complexity} |"
+        f"| {first_cut(law, worths[0]):.1f} | {arrives} | {least:.3f} | {law.complexity} |"
     )
 
 
@@ -87,8 +107,8 @@ def main() -> None:
     print(machine())
     known = cases(()) if SHARED.exists() else []
     sets = tuple(plan_worth(training_scenarios(asked.training, seed=seed)) for seed in (0, UNSEEN))
-    print("| law | training | unseen | public | solved | arrives | of the least time | size |")
-    print(f"|---|{'---:|' * 7}")
+    print("| law | training | unseen | public | solved | cut cm | arrives | of the least time | size |")
+    print(f"|---|{'---:|' * 8}")
     for name, law in laws_of(asked.folders):
         print(row(name, law, (sets[0], sets[1]), known, asked.seeds), flush=True)
 
