@@ -24,6 +24,7 @@ from gpsynth.cli import (
 PATH = click.Path(path_type=Path)
 SEED = 3  # of the law that comes along
 EXIT_CODES = MappingProxyType({"planned": 0, "unreachable": 3, "not_found": 4})
+NOT_THERE = 4  # exit code of a drive that did not come to its goal without a collision
 resume_option = click.option(
     "--resume", is_flag=True, help="Go on with the synthesis in the run folder, other options being the same."
 )
@@ -134,6 +135,54 @@ def plan(
     if made.ended == "interrupted":
         raise KeyboardInterrupt
     return EXIT_CODES[made.status]
+
+
+@cli.command()
+@click.argument("scenario_file", metavar="SCENARIO.json", type=PATH)
+@click.option("--out", type=PATH, required=True, help="Folder for drive.json and its picture.")
+@click.option("--law", "law_file", metavar="LAW.json", type=PATH, help="[default: the law that comes along]")
+@click.option("--margin", type=float, default=0.05, show_default=True, help="Clearance to keep, in m.")
+@click.option("--reach", type=float, default=3.0, show_default=True, help="How far the robot sees, in m.")
+@click.option("--uncertain", is_flag=True, help="Gains that are off, wheels that slip, a noisy pose.")
+@seed_option()
+def drive(
+    scenario_file: Path,
+    out: Path,
+    law_file: Path | None,
+    margin: float,
+    reach: float,
+    uncertain: bool,
+    seed: int,
+) -> int:
+    """Drive a simulated robot and plan on at 10 Hz.
+
+    What rests is known from the beginning, what moves is seen when it is near. Exit code 0 if the goal is reached
+    without a collision, 4 if not, 2 if the input is wrong.
+    """
+    with status(LOADING):
+        from applications.rosbot.loop import drive_scenario
+        from applications.rosbot.replanning import Replanning
+        from applications.rosbot.scenario_file import read_scenario
+        from applications.rosbot.sensing import Sensor
+        from applications.rosbot.simulated_robot import UNCERTAIN, Flaws
+        from applications.rosbot.stabilizer import default_law
+        from applications.rosbot.stages import load_steering_law, write_drive_run
+    scenario = read_scenario(scenario_file)
+    law = load_steering_law(law_file) if law_file else default_law()
+    sensor, settings = Sensor(reach), Replanning.keeping(margin)
+    sensor.check(scenario)
+    run_folder = begin(out, seed)
+    with status(f"driving {scenario.name}"):
+        driven = drive_scenario(
+            scenario,
+            law,
+            flaws=UNCERTAIN if uncertain else Flaws(),
+            sensor=sensor,
+            settings=settings,
+            seed=seed,
+        )
+    click.echo(write_drive_run(run_folder, scenario_file, driven, law, sensor, seed))
+    return 0 if driven.arrives and driven.is_safe else NOT_THERE
 
 
 @cli.command()

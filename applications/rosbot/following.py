@@ -70,6 +70,6 @@ def nearest_time(trajectory: Trajectory, pose: Floats, expected: float) -> float
 
 def _region(problem: Problem, schedule: Schedule) -> tuple[Floats, Floats]:
     """Bounds (3,) of the equilibrium points: all that the plan leads to and some more, and two turns."""
-    places = np.vstack([problem.starts, problem.goal, schedule.points])[:, :2]
+    places = np.vstack([problem.starts[:, :2], problem.goal[:2], schedule.points[:, :2]])
     turns = 2.0 * np.pi
     return np.append(places.min(axis=0) - BEYOND, -turns), np.append(places.max(axis=0) + BEYOND, turns)

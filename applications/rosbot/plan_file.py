@@ -52,7 +52,7 @@ def plan_document(report: PlanReport) -> dict[str, Any]:
             "certificate": _proved(report.certificate) if report.certificate else None,
             "law": {"hash": report.law.hash, "formulas": list(report.law.formulas())},
             "controls": report.controls.tolist(),
-            "trajectory": _once_a_period(check.trajectory).tolist(),
+            "trajectory": once_a_period(check.trajectory).tolist(),
             "schedule": {"points": schedule.points.tolist(), "dwell": schedule.dwell.tolist()},
         }
     return document
@@ -71,7 +71,7 @@ def _finite(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _once_a_period(trajectory: Floats) -> Floats:
+def once_a_period(trajectory: Floats) -> Floats:
     """The rows (t, x, y, theta) at every control period, and the last one."""
     periods = trajectory[:, 0] / PERIOD
     kept = np.abs(periods - np.round(periods)) < 1e-6

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from applications.rosbot.gaps import gaps_to_room, least_gap
 from applications.rosbot.lags import nominal_path
@@ -43,13 +44,10 @@ def replay(
     durations = np.broadcast_to(np.asarray(period, dtype=np.float64), (len(controls),))
     _check(controls, durations)
     trajectory = _driven(scenario, controls, durations)
-    errors = trajectory[:, 1:] - scenario.goal
-    distance = np.hypot(errors[:, 0], errors[:, 1])
-    turn = np.abs(np.remainder(errors[:, 2] + np.pi, 2.0 * np.pi) - np.pi)
-    within = (distance <= scenario.position_tolerance + SLACK) & (turn <= scenario.heading_tolerance + SLACK)
-    within[: _passed(trajectory, via)] = False
-    arrived = bool(np.any(within))
-    trajectory = trajectory[: int(np.argmax(within)) + 1] if arrived else trajectory
+    reached = within(scenario, trajectory[:, 1:])
+    reached[: _passed(trajectory, via)] = False
+    arrived = bool(np.any(reached))
+    trajectory = trajectory[: int(np.argmax(reached)) + 1] if arrived else trajectory
     arrival_time = float(trajectory[-1, 0]) if arrived else np.inf
     return Replay(
         arrival_time=arrival_time,
@@ -90,6 +88,17 @@ def drive(start: Floats, controls: Floats, durations: Floats) -> Floats:
     trajectory[1:, 2] = start[1] + np.cumsum(dy)
     trajectory[:, 3] = heading
     return trajectory
+
+
+def within(scenario: Scenario, poses: Floats) -> npt.NDArray[np.bool_]:
+    """Which of the poses (N, 3) lie within the goal's tolerance."""
+    errors = poses - scenario.goal
+    distance = np.hypot(errors[:, 0], errors[:, 1])
+    turn = np.abs(np.remainder(errors[:, 2] + np.pi, 2.0 * np.pi) - np.pi)
+    inside: npt.NDArray[np.bool_] = (distance <= scenario.position_tolerance + SLACK) & (
+        turn <= scenario.heading_tolerance + SLACK
+    )
+    return inside
 
 
 def clearance(scenario: Scenario, trajectory: Floats) -> float:

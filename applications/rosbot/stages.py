@@ -8,11 +8,16 @@ from pathlib import Path
 import click
 import numpy as np
 
+from applications.rosbot.drive_figure import draw_drive
+from applications.rosbot.drive_file import status_of, write_drive
+from applications.rosbot.figures import save_figure
+from applications.rosbot.loop import Drive
 from applications.rosbot.map_copy import copy_map
 from applications.rosbot.model import STATES
 from applications.rosbot.plan_file import plan_document, write_plan
 from applications.rosbot.planner import Effort, PlanReport, plan_scenario
 from applications.rosbot.scenario_file import read_scenario
+from applications.rosbot.sensing import Sensor
 from applications.rosbot.show import redraw, scenario_beside
 from applications.rosbot.stabilizer import SEARCH_BUDGET, stabilization, synthesize_stabilizer
 from applications.rosbot.through import plan_through
@@ -97,6 +102,19 @@ def run_plan(
     ):
         _besides(path, what, work, older)
     return path
+
+
+def write_drive_run(run: Run, scenario_file: Path, drive: Drive, law: Law, sensor: Sensor, seed: int) -> str:
+    """A drive into a run folder, with its picture and a copy of its scenario; a line that says what came of it."""
+    scenario, path = read_scenario(scenario_file), run.folder / "drive.json"
+    write_bytes(run.folder / "scenario.json", scenario_file.read_bytes())
+    write_drive(drive, law, seed, path)
+    save_figure(draw_drive(scenario, drive, sensor), path.with_suffix(".png"))
+    check = drive.replay
+    return (
+        f"{scenario.name}: {status_of(drive)}, {check.trajectory[-1, 0]:.2f} s, clearance {check.clearance:.3f} m, "
+        f"planning {1e3 * np.median(drive.cycles):.0f} ms a cycle, at most {1e3 * drive.cycles.max():.0f} ms"
+    )
 
 
 def _keep(report: PlanReport, path: Path) -> None:

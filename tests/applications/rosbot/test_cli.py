@@ -168,6 +168,51 @@ def test_a_plan_needs_no_law_of_one_s_own(scenario_file, tmp_path):
     _replays(json.loads((tmp_path / "out" / "plan.json").read_text()), SCENARIO)
 
 
+def test_a_drive_among_movers_can_be_replayed(capsys, scenario_file, law_file, tmp_path):
+    coming = {**CIRCLE, "x": 1.6, "y": 1.1, "vx": -0.3, "vy": -0.3}
+    path, out = scenario_file(obstacles=[coming]), tmp_path / "out"
+    assert _run("drive", path, "--out", out, "--law", law_file, "--seed", "3") == 0
+    drive = json.loads((out / "drive.json").read_text())
+    assert drive["status"] == "arrived"
+    poses = _arcs(tuple(SCENARIO["start"]), drive["speeds"], drive["control_period"])
+    times = drive["control_period"] / 20 * np.arange(len(poses))
+    places = np.array([[coming["x"], coming["y"]]]) + times[:, np.newaxis] * [coming["vx"], coming["vy"]]
+    gaps = np.hypot(*(poses[:, :2] - places).T) - coming["r"] - SCENARIO["robot"]["footprint"]["radius"]
+    assert drive["clearance"] == pytest.approx(gaps.min(), abs=2.5e-3)  # both move between the samples
+    assert gaps.min() > 0.0
+    assert len(drive["courses"]) == math.ceil(len(drive["speeds"]) / 2)
+    assert f"room: arrived, {drive['arrival_time']:.2f} s" in capsys.readouterr().out
+    assert (out / "drive.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "scenario.json").read_bytes() == path.read_bytes()
+
+
+def test_a_drive_that_does_not_arrive_is_4(scenario_file, law_file, tmp_path):
+    late = scenario_file(time_limit=0.5)
+    assert _run("drive", late, "--out", tmp_path / "out", "--law", law_file) == 4
+    assert json.loads((tmp_path / "out" / "drive.json").read_text())["status"] == "late"
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (["--reach", "0"], ["the sensor's reach is 0.0 m; expected more than 0"]),
+        (["--margin", "-1"], ["the margin is -1.0 m", "expected 0 <= least <= margin"]),
+    ],
+)
+def test_a_drive_with_wrong_numbers_is_one_sentence(
+    capsys, scenario_file, law_file, tmp_path, options, sentence
+):
+    path = scenario_file()
+    _fails(capsys, "drive", path, "--out", tmp_path / "out", "--law", law_file, *options, sentence=sentence)
+    assert not (tmp_path / "out").exists()
+
+
+def test_more_movers_than_can_be_told_apart_is_one_sentence(capsys, scenario_file, law_file, tmp_path):
+    path = scenario_file(obstacles=[{**CIRCLE, "vx": 0.1}] * 33)
+    sentence = ["33 circles move; the sensor can tell 32 apart"]
+    _fails(capsys, "drive", path, "--out", tmp_path / "out", "--law", law_file, sentence=sentence)
+
+
 def test_an_unreachable_goal_is_3_with_the_reason(capsys, scenario_file, law_file, tmp_path):
     out = tmp_path / "out"
     out.mkdir()

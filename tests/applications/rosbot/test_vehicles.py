@@ -1,5 +1,7 @@
 """Plans for each plant, driven by integrators that know its equations and nothing else."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -69,6 +71,15 @@ def test_each_plant_gets_a_plan_within_unequal_limits(plant, speed_limits):
     assert 0.0 <= report.certificate.clearance <= gaps.min() + 1e-6
     if scenario.model == "car":
         assert np.all(np.abs(omega) <= np.abs(v) / 0.6 + 1e-12)
+
+
+def test_a_robot_with_lags_is_planned_for_on_its_way():
+    scenario = scene(model="dynamic_unicycle")
+    report = plan_scenario(scenario, [default_law()], seed=0, effort=QUICK)
+    here = replace(scenario, start=report.plan.trajectory.x[20, :3])
+    later = plan_scenario(here, [default_law()], effort=QUICK, previous=report, elapsed=20 * PERIOD)
+    assert later.status == "planned"
+    assert later.replay.arrival_time < report.replay.arrival_time
 
 
 def test_the_replay_of_lags_is_what_an_adaptive_integrator_finds():

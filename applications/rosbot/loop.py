@@ -1,0 +1,126 @@
+"""The receding-horizon loop at 10 Hz: sense, plan on from where the robot will be, and drive on meanwhile.
+
+A course that is planned in one cycle takes effect in the next. The law is the same at all times; what a new course
+changes are the equilibrium points.
+"""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from applications.rosbot.courses import Course, standing
+from applications.rosbot.planner import PERIOD
+from applications.rosbot.replanning import Replanning, replan
+from applications.rosbot.replay import Replay, drive, replay, within
+from applications.rosbot.scenario import Scenario
+from applications.rosbot.sensing import Sensor, scene_ahead
+from applications.rosbot.simulated_robot import Flaws, SimulatedRobot
+from gpsynth.arrays import Floats
+from gpsynth.errors import ScenarioError
+from gpsynth.law import Law
+from gpsynth.schedule import Schedule
+from gpsynth.seeds import stream
+
+TICKS = 2  # control periods in a cycle
+CYCLE = TICKS * PERIOD  # s
+ROBOT, SEARCH = range(2)  # random streams
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """A run from the start to the goal, or to the time limit."""
+
+    applied: Floats  # (n, 2) speeds of the robot (m/s, rad/s), a row a period
+    replay: Replay  # of these speeds
+    cycles: Floats  # (c,) s of processor time that planning took
+    courses: tuple[Course, ...]  # that were followed, one a cycle
+
+    @property
+    def arrives(self) -> bool:
+        """Whether the goal is reached in time."""
+        return self.replay.in_time
+
+    @property
+    def is_safe(self) -> bool:
+        """Whether nothing is hit on the way, and the bounds are kept."""
+        return self.replay.clearance >= 0.0 and self.replay.in_bounds
+
+
+@dataclass(frozen=True, eq=False)
+class _Moment:
+    """What is so at the beginning of a cycle."""
+
+    pose: Floats  # (3,) of the robot
+    estimate: Floats  # (3,) what it takes for its pose
+    course: Course
+    age: float  # s since the course began
+    arrived: bool = False
+
+
+def drive_scenario(
+    scenario: Scenario,
+    law: Law,
+    *,
+    schedule: Schedule | None = None,
+    flaws: Flaws = Flaws(),
+    sensor: Sensor = Sensor(),
+    settings: Replanning | None = Replanning(),
+    seed: int = 0,
+) -> Drive:
+    """Drive a simulated robot to the goal and plan on in every cycle; the same seed gives the same run.
+
+    The first course is the schedule, or to stand still; without `settings` nothing is planned and it is followed to
+    its end. Raises ScenarioError if more circles move than the sensor can tell apart, or the
+    robot is no unicycle.
+    """
+    sensor.check(scenario)
+    if scenario.model != "unicycle":
+        raise ScenarioError(f"the robot is a {scenario.model}; the loop drives a unicycle")
+    law = law.with_limits(*zip(scenario.speed_limits, scenario.turn_limits, strict=True))
+    robot = SimulatedRobot.drawn(flaws, stream(seed, ROBOT))
+    first = Course.of(schedule or standing(scenario.start), settings.points if settings else 1)
+    now = _Moment(scenario.start, scenario.start, first, 0.0)
+    applied, cycles, courses = list[Floats](), list[float](), list[Course]()
+    while len(courses) * CYCLE < scenario.time_limit and not now.arrived:
+        course, age = now.course, now.age + CYCLE
+        courses.append(course)
+        if settings is not None:
+            began = time.process_time()
+            seen = sensor.seen(scenario, now.estimate[:2], len(cycles) * CYCLE)
+            scene = scene_ahead(scenario, seen, _ahead(scenario, law, now), CYCLE)
+            course = replan(scene, law, course, age, settings, seed=seed, path=(SEARCH, len(cycles)))
+            age = 0.0
+            cycles.append(time.process_time() - began)
+        now, speeds = _driven(scenario, law, robot, now)
+        now = replace(now, course=course, age=age)
+        applied.append(speeds)
+    controls = np.concatenate(applied)
+    return Drive(controls, replay(scenario, controls, PERIOD), np.array(cycles), tuple(courses))
+
+
+def _driven(scenario: Scenario, law: Law, robot: SimulatedRobot, now: _Moment) -> tuple[_Moment, Floats]:
+    """A cycle along the course, and the speeds (TICKS, 2) of the robot in it."""
+    pose, estimate, arrived, applied = now.pose, now.estimate, False, []
+    for tick in range(TICKS):
+        control = law(estimate, now.course.target(now.age + tick * PERIOD, scenario.goal))
+        speeds = robot.applied(control)
+        poses = _moved(pose, speeds)
+        pose, arrived = poses[-1], arrived or bool(np.any(within(scenario, poses)))
+        estimate = robot.located(_moved(estimate, control)[-1], pose)
+        applied.append(speeds)
+    return replace(now, pose=pose, estimate=estimate, arrived=arrived), np.array(applied)
+
+
+def _ahead(scenario: Scenario, law: Law, now: _Moment) -> Floats:
+    """Where a robot without flaws will be after a cycle, (3,)."""
+    estimate = now.estimate
+    for tick in range(TICKS):
+        control = law(estimate, now.course.target(now.age + tick * PERIOD, scenario.goal))
+        estimate = _moved(estimate, control)[-1]
+    return estimate
+
+
+def _moved(pose: Floats, speeds: Floats) -> Floats:
+    """The poses (N, 3) during one period."""
+    return drive(pose, speeds[np.newaxis], np.array([PERIOD]))[:, 1:]

@@ -1,0 +1,51 @@
+"""What is known of a scenario on the way, against where circles are by hand."""
+
+import numpy as np
+import pytest
+
+from applications.rosbot.scenario import Scenario
+from applications.rosbot.sensing import Sensor, scene_ahead
+from gpsynth.errors import ScenarioError
+
+RESTING, NEAR, FAR = [9.0, 0.0, 0.0, 0.0, 0.2], [2.0, 0.0, 0.1, 0.0, 0.2], [9.0, 1.0, -0.4, 0.0, 0.2]
+
+
+def room(**changes):
+    return Scenario(
+        **{"start": [0.0, 0.0, 0.0], "goal": [6.0, 0.0, 0.0], "circles": [RESTING, NEAR, FAR]} | changes
+    )
+
+
+def test_what_rests_is_known_and_what_moves_is_seen_when_near():
+    assert Sensor().seen(room(), np.zeros(2), 0.0).tolist() == [RESTING, NEAR]
+    later = Sensor().seen(room(), np.array([3.0, 0.0]), 10.0)
+    assert later.tolist() == [RESTING, [3.0, 0.0, 0.1, 0.0, 0.2], [5.0, 1.0, -0.4, 0.0, 0.2]]
+
+
+def test_more_movers_than_a_sensor_can_tell_apart():
+    with pytest.raises(ScenarioError, match="2 circles move; the sensor can tell 1 apart"):
+        Sensor(most=1).check(room())
+
+
+@pytest.mark.parametrize("reach", [0.0, -1.0, np.nan])
+def test_a_sensor_reaches_somewhere(reach):
+    with pytest.raises(ScenarioError, match="the sensor's reach is"):
+        Sensor(reach)
+
+
+def test_the_scene_ahead_has_the_circles_where_they_will_be():
+    scene = scene_ahead(room(), np.array([NEAR]), np.array([0.5, 0.0, 7.0]), 2.0)
+    assert scene.circles.tolist() == [[2.2, 0.0, 0.1, 0.0, 0.2]]
+    assert np.allclose(scene.start, [0.5, 0.0, 7.0 - 2.0 * np.pi])
+
+
+def test_a_circle_that_the_robot_overlaps_is_shrunk_and_one_around_its_center_left_out():
+    pose = np.array([1.75, 0.0, 0.0])
+    scene = scene_ahead(room(), np.array([NEAR, [1.8, 0.0, 0.0, 0.0, 0.3]]), pose, 0.0)
+    assert len(scene.circles) == 1
+    assert scene.circles[0, 4] == pytest.approx(0.1)
+
+
+def test_a_pose_out_of_bounds_is_moved_inside():
+    scene = scene_ahead(room(bounds=[-1.0, 7.0, -1.0, 1.0]), np.empty((0, 5)), np.array([0.0, 1.1, 0.0]), 0.1)
+    assert scene.start.tolist() == [0.0, 1.0, 0.0]
