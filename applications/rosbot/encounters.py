@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from applications.rosbot.arcs import ROUNDING, Arcs, advance
-from applications.rosbot.chords import from_origin
+from applications.rosbot.arcs import ROUNDING, Arcs, advance, from_origin
 from applications.rosbot.others import poses_at
 from gpsynth.arrays import Floats
 
