@@ -76,7 +76,9 @@ def certify(
         found.append(_in_room(chords, scenario))
         found += [] if by_arcs else [_turning(chords, scenario.circles)]
     nearest = min(found, key=lambda each: each.gap)
-    return Certificate(nearest.gap, _room(path, scenario.bounds), nearest.obstacle, nearest.time, nearest.robot)
+    return Certificate(
+        nearest.gap, _room(path, scenario.bounds), nearest.obstacle, nearest.time, nearest.robot
+    )
 
 
 def _lagging(scenario: Scenario, controls: Floats, durations: Floats) -> Arcs:

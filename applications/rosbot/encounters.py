@@ -36,9 +36,7 @@ class _Parts:
 
     def moved(self, steps: Floats) -> Floats:
         """The relative motion (r, 2) in so many seconds."""
-        one, two = (
-            advance(*given, steps) for given in zip(self.headings, self.v, self.omega, strict=True)
-        )
+        one, two = (advance(*given, steps) for given in zip(self.headings, self.v, self.omega, strict=True))
         return one - two
 
     def halved(self, which: npt.NDArray[np.bool_]) -> "_Parts":

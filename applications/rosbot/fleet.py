@@ -48,7 +48,9 @@ class FleetReport:
     evaluations: int
     seed: int
     scenarios: tuple[Scenario, ...]
-    robots: tuple[PlanReport, ...] = ()  # each with the plans of all others in its scenario; none without plans
+    robots: tuple[
+        PlanReport, ...
+    ] = ()  # each with the plans of all others in its scenario; none without plans
     alone: tuple[PlanReport, ...] = ()  # what each would do without the others
     encounters: tuple[Encounter, ...] = ()  # of all pairs
     ended: Literal["complete", "interrupted"] = "complete"

@@ -36,7 +36,9 @@ ROBOT = Effort(followers=PlanSettings(particles=64, iterations=15, rounds=4, pat
 class FleetEffort:
     """How much is searched for a fleet."""
 
-    robot: Effort = ROBOT  # for each plan of a robot among others; its followers begin at what it would do alone
+    robot: Effort = (
+        ROBOT  # for each plan of a robot among others; its followers begin at what it would do alone
+    )
     orders: int = 3  # priorities that are tried, though one of them succeeds
     retries: int = 4  # more of them while none does
     rounds: int = 2  # of improvements, at most
@@ -81,9 +83,7 @@ class FleetSearch:
             order = following
         yield from self._improved(best, alone)
 
-    def _in_order(
-        self, order: Sequence[int], alone: Sequence[PlanReport]
-    ) -> tuple[Plans, int, int | None]:
+    def _in_order(self, order: Sequence[int], alone: Sequence[PlanReport]) -> tuple[Plans, int, int | None]:
         """Plans made in this order, their evaluations, and who found none."""
         plans, spent = dict[int, PlanReport](), 0
         for number in order:

@@ -59,7 +59,10 @@ def weighted(problem: Problem, weights: Weights) -> Problem:
     if weights.clearance and (problem.obstacles is None or not len(problem.obstacles.circles)):
         raise ProblemError("clearance is a weight for problems with circles; this one has none")
     if weights.clearance and problem.obstacles is not None:
-        for what, given in (("a distance field", problem.obstacles.field), ("tracks", problem.obstacles.tracks)):
+        for what, given in (
+            ("a distance field", problem.obstacles.field),
+            ("tracks", problem.obstacles.tracks),
+        ):
             if given is not None:
                 raise ProblemError(f"clearance weighs circles alone; this problem has {what}")
     terms = (
