@@ -20,11 +20,11 @@ from gpsynth.law import Law
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
 from gpsynth.program import Program
+from gpsynth.tracks import NOBODY
 
 MOST_PERIODS = 10_000_000  # of one rollout
 ROUNDING = 1e-9  # of a sum of costs: what is above a bound by no more is not above it
 _NO_TRACE = np.empty((0, 0, 0))
-_NO_TRACKS = frozen(np.empty((0, 0, 2))), frozen(np.empty(0)), 1.0
 _NO_TOLL = Toll(frozen(np.empty(0)), *[0.0] * 8)
 
 
@@ -211,18 +211,20 @@ class Evaluator:
             return sealed(
                 World(
                     *(nowhere, np.empty((0, 5)), 0, NONE, everywhere, float(self.margin)),
-                    *(np.empty((0, 3)), nothing, origin, *_NO_TRACKS),
+                    *(np.empty((0, 3)), nothing, origin, NOBODY.places, NOBODY.radii, NOBODY.period),
                 )
             )
         states, body, field = self.problem.plant.state_names, obstacles.body, obstacles.field
-        tracks = obstacles.tracks
+        tracks = obstacles.tracks or NOBODY
         names = obstacles.position if np.any(body[:, :2]) else obstacles.position[:2]
         return sealed(
             World(
                 np.array([states.index(name) for name in names], dtype=np.int32),
                 *(*_sorted_circles(obstacles), obstacles.bounds, float(self.margin), body),
                 *((np.empty((0, 0)), np.zeros(3)) if field is None else (field.squares, field.grid)),
-                *(_NO_TRACKS if tracks is None else (tracks.places, tracks.radii, tracks.period)),
+                tracks.places,
+                tracks.radii,
+                tracks.period,
             )
         )
 

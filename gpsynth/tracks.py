@@ -35,3 +35,6 @@ class Tracks:
         ticks = self.period * np.arange(self.places.shape[1])
         centers = [[np.interp(times, ticks, axis) for axis in track.T] for track in self.places]
         return np.array(centers).reshape(len(self.places), 2, len(times)).transpose(0, 2, 1)
+
+
+NOBODY = Tracks(np.empty((0, 0, 2)), np.empty(0), 1.0)

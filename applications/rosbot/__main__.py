@@ -194,8 +194,8 @@ def drive(
 def fleet(fleet_file: Path, out: Path, law_file: Path | None, seed: int, threads: int) -> int:
     """Plan for several robots that start together.
 
-    Their mutual clearance is proved. Exit code 0 with plans, 3 if a goal is proved to be unreachable, 4 if no plans were
-    found, 2 if the input is wrong. Ctrl-C ends the search and keeps the best plans so far: exit code 130.
+    Their mutual clearance is proved. Exit code 0 with plans, 3 if a goal is proved to be unreachable, 4 if no plans
+    were found, 2 if the input is wrong. Ctrl-C ends the search and keeps the best plans so far: exit code 130.
     """
     with status(LOADING):
         from applications.rosbot.fleet import check_fleet, plan_fleet

@@ -32,12 +32,14 @@ class _Parts:
     @property
     def bend(self) -> Floats:
         """How far (m, (r,)) the relative motion can be from its chord."""
-        return (0.125 + ROUNDING) * np.abs(self.v * self.omega).sum(axis=0) * self.steps**2
+        bends: Floats = (0.125 + ROUNDING) * np.abs(self.v * self.omega).sum(axis=0) * self.steps**2
+        return bends
 
     def moved(self, steps: Floats) -> Floats:
         """The relative motion (r, 2) in so many seconds."""
-        one, two = (advance(*given, steps) for given in zip(self.headings, self.v, self.omega, strict=True))
-        return one - two
+        one, two = map(advance, self.headings, self.v, self.omega, (steps, steps))
+        motion: Floats = one - two
+        return motion
 
     def halved(self, which: npt.NDArray[np.bool_]) -> "_Parts":
         """Both halves of some of them."""
@@ -49,7 +51,8 @@ class _Parts:
             times[:, which].ravel(),
             place[:, which].reshape(-1, 2),
             headings[:, :, which].reshape(2, -1),
-            *(np.tile(values[:, which], 2) for values in (self.v, self.omega)),
+            np.tile(self.v[:, which], 2),
+            np.tile(self.omega[:, which], 2),
             np.tile(half[which], 2),
         )
 
@@ -78,13 +81,9 @@ def _common(first: Arcs, second: Arcs) -> _Parts:
     """The paths cut where either changes its controls; a last piece of no length is where both stand."""
     times = np.union1d(first.times, second.times)
     one, two = poses_at(first, times), poses_at(second, times)
-    return _Parts(
-        times,
-        one[:, :2] - two[:, :2],
-        np.stack([one[:, 2], two[:, 2]]),
-        *np.stack([_driven(first, times), _driven(second, times)], axis=1),
-        np.append(np.diff(times), 0.0),
-    )
+    v, omega = np.stack([_driven(first, times), _driven(second, times)], axis=1)
+    headings = np.stack([one[:, 2], two[:, 2]])
+    return _Parts(times, one[:, :2] - two[:, :2], headings, v, omega, np.append(np.diff(times), 0.0))
 
 
 def _driven(path: Arcs, times: Floats) -> Floats:

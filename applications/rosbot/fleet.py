@@ -121,8 +121,8 @@ def _searched(report: FleetReport, search: FleetSearch) -> FleetReport:
     """The report with the best fleet, if all of it is proved to be clear."""
     plans = NOBODY
     try:
-        for plans, spent in search.run(report.alone):
-            report = replace(report, evaluations=report.evaluations + spent)
+        for found, spent in search.run(report.alone):
+            plans, report = found, replace(report, evaluations=report.evaluations + spent)
     except KeyboardInterrupt:
         if not plans:
             raise

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from applications.rosbot.fleet import FleetReport
-from applications.rosbot.others import Other, poses_at
 from applications.rosbot.fleet_search import other_of
+from applications.rosbot.others import Other, poses_at
 from applications.rosbot.room_figure import draw_room
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
@@ -22,6 +22,7 @@ INSTANTS = 4
 WIDTH = 7.2  # inches, of a page of a paper
 BEYOND = 0.7  # m, shown around the ways
 FLAT = 2.0  # times as wide as high: instants stand one below the other
+NEAR = 1.0  # m, up to where distances of robots are shown
 FINE = 0.02  # s, between the points of a line
 
 
@@ -41,15 +42,15 @@ def draw_fleet(report: FleetReport) -> "Figure":
     shown = WIDTH / columns * height / width * rows
     with rc_context(dict(STYLE)):
         figure = Figure(figsize=(WIDTH, shown + 2.2), layout="constrained")
-        above, below = figure.subfigures(2, 1, height_ratios=(shown + 0.4, 1.8))
-        places = above.subplots(rows, columns, sharex=True, sharey=True).ravel()
+        parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(shown + 0.4, 1.8)).ravel()
+        places = parts[0].subplots(rows, columns, sharex=True, sharey=True).ravel()
         instants = np.linspace(0.0, end, INSTANTS + 1)[1:] - end / (2 * INSTANTS)
         for axes, instant in zip(places, instants, strict=True):
             count = int(np.searchsorted(times, instant, side="right"))
             _draw_instant(axes, report.scenarios, [path[:count] for path in paths], instant)
             axes.set_xlim(low[0], high[0])
             axes.set_ylim(low[1], high[1])
-        _draw_gaps(below.subplots(), driven, times, paths, instants)
+        _draw_gaps(parts[1].subplots(), driven, times, paths, instants)
     return figure
 
 
@@ -96,5 +97,6 @@ def _draw_gaps(
     axes.axhline(0.0, color=RED, linewidth=0.8)
     for instant in instants:
         axes.axvline(instant, color=PALE, linewidth=0.6, zorder=0)
+    axes.set_ylim(-0.05, NEAR)
     axes.set_xlabel("$t$ (s)")
     axes.set_ylabel("nearest two (m)")

@@ -1,13 +1,13 @@
-"""The search behind a fleet: one robot after the other in several orders, then each once more against all the others.
+"""The search behind a fleet: one robot after the other in several orders, and who loses much once more.
 
-Prioritized planning (Erdmann & Lozano-Perez 1987) is neither complete nor optimal: who is planned early knows nothing of
-those behind it. So orders are tried, and who finds no way goes first in the next one (Bennewitz, Burgard & Thrun 2002).
-The best fleet is then improved a robot at a time, which never makes it worse. A robot whose plan of its own is clear of
-the others keeps that.
+Prioritized planning (Erdmann & Lozano-Perez 1987) is neither complete nor optimal: who is planned early knows nothing
+of those behind it. So orders are tried, and who finds no way, or loses most time, goes first in the next one
+(Bennewitz, Burgard & Thrun 2002). In the best fleet, who loses much is planned anew among all others, which never makes
+it worse. A robot whose plan of its own is clear of the others keeps that.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -18,7 +18,7 @@ from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort
-from gpsynth.checks import check_whole
+from gpsynth.checks import check_number, check_whole
 from gpsynth.law import Law
 from gpsynth.planning import PlanSettings
 from gpsynth.seeds import stream
@@ -42,11 +42,13 @@ class FleetEffort:
     orders: int = 3  # priorities that are tried, though one of them succeeds
     retries: int = 4  # more of them while none does
     rounds: int = 2  # of improvements, at most
+    loss: float = 0.02  # share of the time alone that a robot may lose without being planned anew
 
     def __post_init__(self) -> None:
         check_whole("orders of a fleet", self.orders, 1)
         for name in ("retries", "rounds"):
             check_whole(f"{name} of a fleet", getattr(self, name), 0)
+        check_number("the loss in a fleet", self.loss)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +79,8 @@ class FleetSearch:
             yield best, spent
             if best and (attempt + 1 >= self.effort.orders or rank(best)[0] <= least + GAIN):
                 break
-            following = self._next(order, stuck, tried, attempt)
+            first = _last_by(plans, alone) if stuck is None else stuck
+            following = self._next(order, first, tried, attempt)
             if following is None:
                 break
             order = following
@@ -95,13 +98,13 @@ class FleetSearch:
         return plans, spent, None
 
     def _improved(self, best: Plans, alone: Sequence[PlanReport]) -> Iterator[tuple[Plans, int]]:
-        """Each robot once more against all others, the last one first, until nobody gains."""
+        """Who loses much is planned anew among all others, on all ways, the last one first, until nobody gains."""
         for _ in range(self.effort.rounds if best else 0):
             before = rank(best)
             for number in sorted(best, key=lambda each: -arrival(best[each])):
-                if arrival(best[number]) <= arrival(alone[number]) + GAIN:
+                if arrival(best[number]) <= (1.0 + self.effort.loss) * arrival(alone[number]):
                     continue
-                report, spent = self._among(number, best, alone[number], best[number])
+                report, spent = self._among(number, best, alone[number], None)
                 if arrival(report) < arrival(best[number]) - GAIN:
                     best = {**best, number: report}
                 yield best, spent
@@ -109,7 +112,7 @@ class FleetSearch:
                 break
 
     def _among(
-        self, number: int, plans: Plans, own: PlanReport, previous: PlanReport
+        self, number: int, plans: Plans, own: PlanReport, previous: PlanReport | None
     ) -> tuple[PlanReport, int]:
         """A robot's plan among others, and its evaluations; its own, if that is clear of them."""
         scenario = among(self.scenarios[number], number, plans)
@@ -133,13 +136,18 @@ class FleetSearch:
         return report
 
     def _next(
-        self, order: tuple[int, ...], stuck: int | None, tried: set[tuple[int, ...]], attempt: int
+        self, order: tuple[int, ...], first: int, tried: set[tuple[int, ...]], attempt: int
     ) -> tuple[int, ...] | None:
-        """Who is stuck goes first; else the other way round, then any order; None if there is no new one."""
-        first = order[::-1] if stuck is None else (stuck, *(each for each in order if each != stuck))
+        """The order with one robot before all others; if that has been tried, any other; None if none is found."""
+        changed = (first, *(each for each in order if each != first))
         rng = stream(self.seed, ORDER, attempt)
         drawn = (tuple(rng.permutation(len(order)).tolist()) for _ in range(DRAWS))
-        return next((each for each in (first, *drawn) if each not in tried), None)
+        return next((each for each in (changed, *drawn) if each not in tried), None)
+
+
+def _last_by(plans: Plans, alone: Sequence[PlanReport]) -> int:
+    """Who loses most time to the others."""
+    return max(plans, key=lambda number: arrival(plans[number]) - arrival(alone[number]))
 
 
 def among(scenario: Scenario, number: int, plans: Plans) -> Scenario:

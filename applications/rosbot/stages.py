@@ -11,11 +11,11 @@ import numpy as np
 from applications.rosbot.drive_figure import draw_drive
 from applications.rosbot.drive_file import status_of, write_drive
 from applications.rosbot.figures import save_figure
-from applications.rosbot.loop import Drive
 from applications.rosbot.fleet import FleetReport
 from applications.rosbot.fleet_figure import draw_fleet
 from applications.rosbot.fleet_file import write_fleet
 from applications.rosbot.fleet_search import arrival
+from applications.rosbot.loop import Drive
 from applications.rosbot.map_copy import copy_map
 from applications.rosbot.model import STATES
 from applications.rosbot.plan_file import plan_document, write_plan
