@@ -1,6 +1,7 @@
 """Fleet files: what all robots share and what each has of its own, the command, and one sentence for bad input."""
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,6 @@ from applications.rosbot.__main__ import main
 from applications.rosbot.arcs import arcs
 from applications.rosbot.encounters import least_distance
 from applications.rosbot.fleet_file import parse_fleet, read_fleet
-from applications.rosbot.planner import plan_scenario
 from gpsynth.errors import ScenarioError
 from tests.applications.rosbot.test_fleet import QUICK
 
@@ -35,11 +35,7 @@ FLEET = {
 @pytest.fixture
 def quick(monkeypatch):
     """A search of a fraction of a second."""
-
-    def planned(scenario, laws, **options):
-        return plan_scenario(scenario, laws, **options | {"effort": QUICK.robot})
-
-    monkeypatch.setattr(fleet_search, "plan_scenario", planned)
+    monkeypatch.setattr(fleet, "plan_fleet", partial(fleet.plan_fleet, effort=QUICK))
 
 
 def test_what_a_robot_has_of_its_own_comes_before_what_all_share():
@@ -109,7 +105,7 @@ def test_a_goal_that_cannot_be_reached_has_a_code_of_its_own(tmp_path, capsys):
     file = tmp_path / "shut.json"
     file.write_text(
         changed(
-            obstacles=[{"type": "circle", "x": 2.0, "y": 0.2, "r": 0.1}],
+            obstacles=[{"type": "circle", "x": 2.0, "y": 0.1, "r": 0.2}],
             robots=[
                 FLEET["robots"][0],
                 {"start": [0.5, 0.0, 0.0], "goal": [0.0, 0.0, 0.0]},
