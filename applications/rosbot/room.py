@@ -1,7 +1,7 @@
 """A mapped room: occupied cells, polygons and segments, with their exact distances and a field of them."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -78,10 +78,17 @@ class Room:
     def field(self, spacing: float, places: Floats | None = None) -> DistanceField:
         """The distance field, its nodes at most `spacing` (m) apart, or as far as MOST_NODES allow.
 
-        It reaches AROUND (m) beyond all there is and beyond the places (n, 2).
+        It reaches AROUND (m) beyond all there is and beyond the places (n, 2), these taken to whole meters, so that
+        scenes of one room share a field.
         """
-        points = self.box if places is None else np.vstack([self.box, places])
-        low, high = points.min(axis=0) - AROUND, points.max(axis=0) + AROUND
+        low, high = self.box
+        if places is not None:
+            low = np.minimum(low, np.floor(places.min(axis=0)))
+            high = np.maximum(high, np.ceil(places.max(axis=0)))
+        return _field(self, spacing, tuple((low - AROUND).tolist()), tuple((high + AROUND).tolist()))
+
+    def grid(self, spacing: float, low: Floats, high: Floats) -> DistanceField:
+        """The distance field from one corner (2,) to another."""
         _check_size(np.stack([low, high]), self.width)
         least = float(np.sqrt(np.prod(high - low + self.width) / MOST_NODES))
         parts = max(1, int(np.ceil(self.width / max(spacing, least) - 1e-9)))
@@ -122,6 +129,11 @@ class Room:
 
 def _numbers(values: Floats) -> Floats:
     return frozen(np.asarray(values, dtype=np.float64))
+
+
+@lru_cache(maxsize=2)  # a loop asks for the field of one room again and again
+def _field(room: Room, spacing: float, low: tuple[float, ...], high: tuple[float, ...]) -> DistanceField:
+    return room.grid(spacing, np.array(low), np.array(high))
 
 
 def _check_size(box: Floats, width: float) -> None:

@@ -40,7 +40,7 @@ class Scenario:
         default_factory=lambda: np.zeros((0, 5))
     )  # (c, 5) x m, y m, vx m/s, vy m/s, radius m
     radius: float = 0.15  # m, of the robot; of another body than a disc the largest around its origin
-    body: Floats = field(
+    footprint: Floats = field(
         default_factory=lambda: np.zeros((0, 3))
     )  # (f, 3) x m, y m, radius m in the robot's frame; without any it is a disc
     room: Room | None = None  # obstacles at rest that are no circles
@@ -59,21 +59,24 @@ class Scenario:
             ("goal", (3,)),
             ("bounds", (4,)),
             ("circles", (-1, 5)),
-            ("body", (-1, 3)),
+            ("footprint", (-1, 3)),
         ):
             object.__setattr__(self, name, frozen(_shaped(name, getattr(self, name), shape)))
         for name in ("speed_limits", "turn_limits"):
             low, high = _shaped(name, getattr(self, name), (2,))
             object.__setattr__(self, name, (float(low), float(high)))
-        if len(self.body):
-            _check_body(self.body)
-            object.__setattr__(self, "radius", inner_radius(self.body))
+        if len(self.footprint):
+            _check_footprint(self.footprint)
+            object.__setattr__(self, "radius", inner_radius(self.footprint))
         _check_numbers(self)
         _check_model(self)
         _check_obstacles(self)
-        if not len(self.body):
-            object.__setattr__(self, "body", frozen(np.array([[0.0, 0.0, self.radius]])))
         _check_places(self)
+
+    @cached_property
+    def body(self) -> Floats:
+        """The circles (f, 3) of the robot in its frame: its footprint, or the one disc that it is."""
+        return self.footprint if len(self.footprint) else frozen(np.array([[0.0, 0.0, self.radius]]))
 
     @property
     def discs(self) -> Floats:
@@ -155,11 +158,11 @@ def _check_model(scenario: Scenario) -> None:
         )
 
 
-def _check_body(body: Floats) -> None:
-    for index, (x, y, radius) in enumerate(body):
-        if not (max(abs(x), abs(y)) <= MOST and 0.0 <= radius <= MOST):
+def _check_footprint(footprint: Floats) -> None:
+    for index, (x, y, radius) in enumerate(footprint):
+        if not (max(abs(x), abs(y)) <= MOST and 0.0 < radius <= MOST):
             raise ScenarioError(
-                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius of at least 0"
+                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius above 0"
             )
 
 

@@ -11,9 +11,9 @@ from gpsynth.arrays import Floats
 from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ScenarioError
 
-Flags = npt.NDArray[np.bool_]
+TOUCHING = 1e-9  # m that what is shrunk keeps off, so that no rounding undoes it
 
-APART = 1e-9  # m, between a robot that overlaps something and what is made of it
+Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -57,27 +57,27 @@ def moved(circles: Floats, time: float) -> Floats:
 def scene_ahead(scenario: Scenario, circles: Floats, pose: Floats, delay: float) -> Scenario:
     """The scenario as it will be after a delay (s): from a pose (3,) there, with the circles (c, 5) moved on.
 
-    A circle that the robot would overlap is shrunk until it does not, a robot that would overlap the room is thinned,
-    and a pose out of bounds is moved inside: where it should not be it is all the same, and has to leave.
+    A circle that the robot would overlap is shrunk until it does not, a robot that would overlap the room is made
+    thinner, and a pose out of bounds is moved inside: where it should not be it is all the same, and has to leave.
     """
     later = moved(circles, delay)
     low, high = scenario.bounds.reshape(2, 2).T
     start = np.append(np.clip(pose[:2], low, high), np.remainder(pose[2] + np.pi, 2.0 * np.pi) - np.pi)
-    points = np.column_stack([later[:, :4], np.zeros(len(later))])
-    gap = gaps_at(scenario.body, points, start) - APART
-    later[:, 4] = np.minimum(later[:, 4], gap)
-    return replace(_beside_room(scenario, start), start=start, circles=later[gap >= 0.0])
+    slim = _thinned(scenario, start)
+    fits = gaps_at(slim.body, later, start) + later[:, 4] - TOUCHING
+    later[:, 4] = np.minimum(later[:, 4], fits)
+    return replace(slim, start=start, circles=later[fits >= 0.0])
 
 
-def _beside_room(scenario: Scenario, start: Floats) -> Scenario:
-    """The scenario with a body so thin that it is free at a pose (3,); without its room where none is."""
+def _thinned(scenario: Scenario, pose: Floats) -> Scenario:
+    """The scenario for a robot thin enough for a pose (3,) in the room; where no robot is, without the room."""
     if scenario.room is None:
         return scenario
-    overlap = APART - float(gaps_to_room(scenario.body, scenario.room, start[np.newaxis])[0])
-    if overlap <= APART:
+    gap = float(gaps_to_room(scenario.body, scenario.room, pose[np.newaxis])[0])
+    if gap >= 0.0:
         return scenario
-    thin = scenario.body - [0.0, 0.0, overlap]
-    return replace(scenario, body=thin) if np.all(thin[:, 2] >= 0.0) else replace(scenario, room=None)
+    thin = scenario.body + np.array([0.0, 0.0, gap - TOUCHING])
+    return replace(scenario, footprint=thin) if np.all(thin[:, 2] > 0.0) else replace(scenario, room=None)
 
 
 def _moves(circles: Floats) -> Flags:

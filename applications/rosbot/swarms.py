@@ -13,6 +13,7 @@ from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import anywhere, nearby, repeated, schedules_along
 from applications.rosbot.vehicles import pose_plans
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_number
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Particles, Plan, PlanSettings, Weights
@@ -48,8 +49,9 @@ class Effort:
 
     def __post_init__(self) -> None:
         for name in ("rollouts", "deadline"):
-            if not getattr(self, name) >= 0.0:
-                raise ScenarioError(f"{name} of an effort is {getattr(self, name)}; expected at least 0")
+            check_number(f"the {name} of an effort", getattr(self, name))
+            if not getattr(self, name) > 0.0:
+                raise ScenarioError(f"{name} of an effort is {getattr(self, name)}; expected more than 0")
 
 
 @dataclass(frozen=True, eq=False)

@@ -45,7 +45,8 @@ def plan_through(
     """A plan that comes within the third number (m) of every place in `via` (m, 3), in their order, and then arrives.
 
     Each leg is planned by itself, in least time and with any heading at its end; the whole is replayed and certified.
-    Bounds of `effort` are those of a leg. Where a leg has no plan, the reason says which. Raises ScenarioError if a
+    What `effort` allows is for all legs: each gets an equal share of what is left. Where a leg has no plan, the reason
+    says which. Raises ScenarioError if a
     place is out of bounds or its tolerance not positive, and KeyboardInterrupt if Ctrl-C ends a leg.
     """
     through = check_via(scenario, via)
@@ -57,7 +58,8 @@ def plan_through(
         goal = scenario.goal if number == len(through) else np.append(through[number, :2], headings[number])
         widths = (through[number, 2], ANY_HEADING) if number < len(through) else _tolerance(scenario)
         leg = replace(now, goal=goal, position_tolerance=float(widths[0]), heading_tolerance=widths[1])
-        found = plan_scenario(leg, [law], seed=seed, effort=effort, threads=threads)
+        share = _share(effort, report, len(through) + 1 - number)
+        found = plan_scenario(leg, [law], seed=seed, effort=share, threads=threads)
         spent += found.evaluations
         report = replace(
             report,
@@ -99,6 +101,15 @@ def check_via(scenario: Scenario, via: npt.ArrayLike) -> Floats:
         if np.any((places[number, :2] < low) | (places[number, :2] > high)):
             raise ScenarioError(f"via-point {number} ({x:g}, {y:g}) lies outside the bounds")
     return places
+
+
+def _share(effort: Effort, report: PlanReport, legs: int) -> Effort:
+    """The effort for the next of so many legs, after what the report says has been spent."""
+    return replace(
+        effort,
+        rollouts=max(1.0, (effort.rollouts - report.evaluations) / legs),
+        deadline=max(1e-3, (effort.deadline - report.planning_time) / legs),
+    )
 
 
 def _headings(scenario: Scenario, via: Floats) -> Floats:

@@ -177,10 +177,10 @@ def test_an_origin_that_is_no_part_of_the_body_may_be_in_an_obstacle():
         [[2.0, 0.0, 0.0, 0.0, 0.3]],
         goal=[4.0, 0.0, 0.0],
         bounds=[-1.0, 5.0, 0.0, 0.2],
-        body=[[0.0, 0.5, 0.1]],
+        footprint=[[0.0, 0.5, 0.1]],
     )
     assert certify(arm, np.tile([0.5, 0.0], (160, 1)), 0.05).clearance == pytest.approx(0.1)
     assert reachability(arm).status == "undecided"
     assert lower_bound(replace(arm, bounds=BOUNDS)) == pytest.approx((4.0 - 0.05) / 0.5, abs=1e-5)
-    held = replace(arm, body=[[0.0, 0.5, 0.1], [0.0, 0.0, 0.1]])
+    held = replace(arm, footprint=[[0.0, 0.5, 0.1], [0.0, 0.0, 0.1]])
     assert reachability(held).status == "unreachable"

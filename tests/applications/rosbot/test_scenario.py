@@ -68,5 +68,8 @@ def test_a_robot_that_hardly_moves_is_refused(name, what):
     Scenario(START, GOAL, **{name: (-1e-6, 1e-310)})
 
 
-def test_a_point_is_a_robot_whose_scenario_can_be_changed():
-    assert replace(Scenario(START, GOAL, radius=0.0), start=GOAL).radius == 0.0
+def test_a_changed_robot_is_the_changed_one():
+    disc = Scenario([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], radius=0.0)
+    assert replace(disc, start=[0.1, 0.0, 0.0]).body.tolist() == [[0.0, 0.0, 0.0]]
+    assert replace(disc, radius=0.2).body.tolist() == [[0.0, 0.0, 0.2]]
+    assert replace(disc, footprint=[[0.1, 0.0, 0.3]]).radius == pytest.approx(0.2)

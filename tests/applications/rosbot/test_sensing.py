@@ -52,24 +52,26 @@ def test_a_pose_out_of_bounds_is_moved_inside():
     assert scene.start.tolist() == [0.0, 1.0, 0.0]
 
 
-def test_a_circle_that_a_part_of_the_body_overlaps_is_shrunk():
-    ends = [[-0.2, 0.0, 0.2], [0.2, 0.0, 0.2]]
-    scene = scene_ahead(room(body=ends), np.array([NEAR]), np.array([1.45, 0.0, 0.0]), 0.0)
-    assert scene.circles[0, 4] == pytest.approx(2.0 - 1.65 - 0.2)
+def test_what_the_body_overlaps_counts_not_its_inner_disc():
+    body = np.array([[0.3, 0.0, 0.1], [0.0, 0.0, 0.1]])
+    scene = scene_ahead(room(footprint=body), np.array([NEAR]), np.array([1.55, 0.0, 0.0]), 0.0)
+    assert scene.circles[0, 4] == pytest.approx(0.05, abs=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("x", "radius", "is_there"),
-    [(4.7, 0.15, True), (4.9, 0.1, True), (5.0, 0.0, False), (5.5, 0.15, False)],
-)
-def test_a_robot_that_overlaps_the_room_is_thinned(x, radius, is_there):
-    block = Room(polygons=(np.array([[5.0, -1.0], [6.0, -1.0], [6.0, 1.0], [5.0, 1.0]]),))
+@pytest.mark.parametrize(("x", "radius"), [(0.8, 0.15), (0.9, 0.1), (0.99, 0.01)])
+def test_a_robot_in_a_wall_is_made_thinner(x, radius):
+    wall = Room(segments=np.array([[1.0, -1.0, 1.0, 1.0]]))
+    scene = scene_ahead(room(room=wall), np.empty((0, 5)), np.array([x, 0.0, 0.0]), 0.1)
+    assert scene.radius == pytest.approx(radius, abs=1e-8)
+    assert scene.room is wall
+
+
+def test_nothing_is_left_of_a_room_whose_wall_is_at_the_robot_s_center():
+    block = Room(polygons=(np.array([[0.0, -1.0], [2.0, -1.0], [2.0, 1.0], [0.0, 1.0]]),))
     scene = scene_ahead(
-        room(room=block, goal=[4.0, 0.0, 0.0]), np.empty((0, 5)), np.array([x, 0.0, 0.0]), 0.0
+        room(room=block, start=[-1.0, 0.0, 0.0]), np.empty((0, 5)), np.array([1.0, 0.0, 0.0]), 0.1
     )
-    assert (scene.room is not None) == is_there
-    if is_there:
-        assert scene.radius == pytest.approx(radius, abs=1e-8)
+    assert (scene.room, scene.radius) == (None, 0.15)
 
 
 def test_a_circle_flies_off_no_farther_than_a_scenario_reaches():

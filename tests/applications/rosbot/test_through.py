@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import PERIOD, Effort, problem_of
+from applications.rosbot.planner import PERIOD, Effort, plan_scenario, problem_of
 from applications.rosbot.polar_law import SATURATING, polar_law
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
@@ -105,3 +105,11 @@ def test_too_little_time_after_a_leg_proves_nothing():
 def test_a_circle_may_fly_off_on_the_way():
     far = scene(circles=[[9e3, 0.0, 1e3, 0.0, 0.2]])
     assert plan_through(far, [[1.0, 0.0, 0.1]], law(), effort=QUICK).status == "planned"
+
+
+def test_what_is_allowed_is_for_all_legs():
+    few = Effort(rollouts=3 * 288)
+    report = plan_through(scene(), VIA, law(), seed=1, effort=few)
+    alone = plan_scenario(scene(), [law()], seed=1, effort=few)
+    assert report.ended == "rollouts"
+    assert few.rollouts <= report.evaluations <= alone.evaluations  # a round is not broken off
