@@ -20,6 +20,7 @@ from gpsynth.law import Law
 from gpsynth.plant import Plant
 from gpsynth.problem import Obstacles, Problem
 from gpsynth.program import Program
+from gpsynth.tracks import NOBODY
 
 MOST_PERIODS = 10_000_000  # of one rollout
 ROUNDING = 1e-9  # of a sum of costs: what is above a bound by no more is not above it
@@ -210,16 +211,20 @@ class Evaluator:
             return sealed(
                 World(
                     *(nowhere, np.empty((0, 5)), 0, NONE, everywhere, float(self.margin)),
-                    *(np.empty((0, 3)), nothing, origin),
+                    *(np.empty((0, 3)), nothing, origin, NOBODY.places, NOBODY.radii, NOBODY.period),
                 )
             )
         states, body, field = self.problem.plant.state_names, obstacles.body, obstacles.field
+        tracks = obstacles.tracks or NOBODY
         names = obstacles.position if np.any(body[:, :2]) else obstacles.position[:2]
         return sealed(
             World(
                 np.array([states.index(name) for name in names], dtype=np.int32),
                 *(*_sorted_circles(obstacles), obstacles.bounds, float(self.margin), body),
                 *((np.empty((0, 0)), np.zeros(3)) if field is None else (field.squares, field.grid)),
+                tracks.places,
+                tracks.radii,
+                tracks.period,
             )
         )
 

@@ -19,6 +19,7 @@ from gpsynth.plant_parts import TIME
 from gpsynth.program import Program
 from gpsynth.signs import nonnegative
 from gpsynth.tracing import Names, input_names, takes_time, trace, wrap_angle
+from gpsynth.tracks import Tracks
 
 MOST_STEPS = 1_000_000  # of a period
 METHODS = ("euler", "heun", "rk4")
@@ -43,6 +44,7 @@ class Obstacles:
     position: tuple[str, ...] = ("x", "y")  # states
     footprint: Floats | None = None  # (f, 3) x, y (m) in the robot's frame and radius (m)
     field: DistanceField | None = None  # of obstacles at rest that are no circles
+    tracks: Tracks | None = None  # discs whose places over time are known
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "circles", shaped("circles", self.circles, (-1, 5)))
@@ -60,7 +62,10 @@ class Obstacles:
         return frozen(np.array([[0.0, 0.0, self.radius]])) if self.footprint is None else self.footprint
 
     def gaps(self, poses: Floats) -> Floats:
-        """How far (N,) the robot at poses (N, 2) or (N, 3) is from the obstacles at time 0; see `DistanceField.at`."""
+        """How far (N,) the robot at poses (N, 2) or (N, 3) is from the obstacles at time 0; see `DistanceField.at`.
+
+        Tracks are left out: what moves on them is elsewhere soon.
+        """
         gaps: Floats = self.gaps_to_circles(poses).min(axis=1, initial=np.inf)
         return gaps if self.field is None else np.minimum(gaps, self.gaps_to_field(poses))
 
@@ -302,6 +307,8 @@ def _check_obstacles(obstacles: Obstacles) -> None:
 def _check_footprint(obstacles: Obstacles) -> None:
     if not isinstance(obstacles.field, DistanceField | None):
         raise ProblemError(f"the field must be a DistanceField or None, got {obstacles.field!r}")
+    if not isinstance(obstacles.tracks, Tracks | None):
+        raise ProblemError(f"the tracks must be Tracks or None, got {obstacles.tracks!r}")
     if obstacles.footprint is None:
         return
     if obstacles.radius != 0.0:
@@ -351,6 +358,13 @@ def _check(problem: Problem) -> None:
 
 def _check_places(problem: Problem, obstacles: Obstacles) -> None:
     """No start may lie in an obstacle or out of bounds."""
+    if obstacles.tracks is not None:
+        ticks = obstacles.tracks.period / problem.period
+        if round(ticks) < 1 or abs(ticks - round(ticks)) > 1e-9 * ticks:
+            raise ProblemError(
+                f"the period of tracks, {obstacles.tracks.period} s, must be a multiple of the problem's, "
+                f"{problem.period} s"
+            )
     names = problem.plant.state_names
     unknown = [name for name in obstacles.position if name not in names]
     if unknown:

@@ -114,7 +114,7 @@ def test_a_published_matrix_is_varied_as_printed():
 @pytest.mark.slow
 def test_the_examples_of_the_planner_run_as_printed():
     place = run_as_printed("rosbot.md")
-    assert {place[name].status for name in ("report", "tour", "later")} == {"planned"}
+    assert {place[name].status for name in ("report", "tour", "later", "fleet")} == {"planned"}
     assert place["tour"].certificate.is_clear
 
 

@@ -186,6 +186,35 @@ def drive(
 
 
 @cli.command()
+@click.argument("fleet_file", metavar="FLEET.json", type=PATH)
+@click.option("--out", type=PATH, required=True, help="Folder for fleet.json and its picture.")
+@click.option("--law", "law_file", metavar="LAW.json", type=PATH, help="[default: the law that comes along]")
+@seed_option()
+@threads_option
+def fleet(fleet_file: Path, out: Path, law_file: Path | None, seed: int, threads: int) -> int:
+    """Plan for several robots that start together.
+
+    Their mutual clearance is proved. Exit code 0 with plans, 3 if a goal is proved to be unreachable, 4 if no plans
+    were found, 2 if the input is wrong. Ctrl-C ends the search and keeps the best plans so far: exit code 130.
+    """
+    with status(LOADING):
+        from applications.rosbot.fleet import check_fleet, plan_fleet
+        from applications.rosbot.fleet_file import read_fleet
+        from applications.rosbot.stabilizer import default_law
+        from applications.rosbot.stages import load_steering_law, write_fleet_run
+    robots = read_fleet(fleet_file)
+    check_fleet(robots.scenarios)
+    law = load_steering_law(law_file) if law_file else default_law()
+    run_folder = begin(out, seed)
+    with status(f"planning {robots.name}"):
+        report = plan_fleet(robots.scenarios, [law], seed=seed, threads=threads)
+    click.echo(f"{robots.name}: {write_fleet_run(run_folder, fleet_file, report)}")
+    if report.ended == "interrupted":
+        raise KeyboardInterrupt
+    return EXIT_CODES[report.status]
+
+
+@cli.command()
 @click.argument("place", metavar="RUN_OR_PLAN", type=PATH)
 def show(place: Path) -> None:
     """Print what a run or plan.json holds.

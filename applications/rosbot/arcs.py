@@ -75,3 +75,12 @@ def advance(heading: Floats, v: Floats, omega: Floats, steps: Floats) -> Floats:
     chord = v * steps * np.where(half == 0.0, 1.0, np.sin(half) / np.where(half == 0.0, 1.0, half))
     moved: Floats = chord[:, np.newaxis] * np.column_stack([np.cos(heading + half), np.sin(heading + half)])
     return moved
+
+
+def from_origin(places: Floats, motions: Floats) -> Floats:
+    """The distance (r,) of the origin from the segments that begin at `places` (r, 2)."""
+    square = np.sum(motions * motions, axis=1)
+    share = -np.sum(places * motions, axis=1) / np.where(square > 0.0, square, 1.0)
+    nearest = places + np.clip(share, 0.0, 1.0)[:, np.newaxis] * motions
+    distance: Floats = np.hypot(nearest[:, 0], nearest[:, 1])
+    return distance

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, advance, arcs
+from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, advance, arcs, from_origin
 from applications.rosbot.chords import Chords, chords_of, gaps_of_circles, gaps_of_room
+from applications.rosbot.encounters import least_distance
 from applications.rosbot.lags import ERROR, nominal_path
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
@@ -32,6 +33,7 @@ class Certificate:
     room: float  # m, at least, between the robot's center and the bounds; infinity without bounds
     obstacle: int | None  # which circle is nearest; None if it is the room
     time: float | None  # s, when the piece begins that is nearest to it
+    robot: int | None = None  # which other robot is nearest; None if it is none of them
 
     @property
     def is_clear(self) -> bool:
@@ -46,6 +48,7 @@ class _Nearest:
     gap: float = np.inf
     obstacle: int | None = None
     time: float | None = None
+    robot: int | None = None
 
 
 def certify(
@@ -53,7 +56,8 @@ def certify(
 ) -> Certificate:
     """The certificate of (v, omega) pairs (n, 2), each held for `period` seconds (one number, or one per pair).
 
-    `until` (s) is the arrival, after which the robot stands.
+    `until` (s) is the arrival, after which the robot stands. Other robots are kept clear of even then, obstacles up to
+    the arrival alone.
     """
     controls = np.asarray(controls, dtype=np.float64).reshape(-1, 2)
     durations = np.broadcast_to(np.asarray(period, dtype=np.float64), len(controls))
@@ -66,12 +70,15 @@ def certify(
     if by_arcs:
         found += [_at_rest(path, scenario, np.flatnonzero(~moves))]
         found += [_moving(path, scenario, np.flatnonzero(moves))]
+        found += [_among(path, scenario)]
     if scenario.room is not None or not by_arcs:
         chords = chords_of(path, scenario.body)
         found.append(_in_room(chords, scenario))
         found += [] if by_arcs else [_turning(chords, scenario.circles)]
     nearest = min(found, key=lambda each: each.gap)
-    return Certificate(nearest.gap, _room(path, scenario.bounds), nearest.obstacle, nearest.time)
+    return Certificate(
+        nearest.gap, _room(path, scenario.bounds), nearest.obstacle, nearest.time, nearest.robot
+    )
 
 
 def _lagging(scenario: Scenario, controls: Floats, durations: Floats) -> Arcs:
@@ -145,7 +152,7 @@ def _moving(path: Arcs, scenario: Scenario, which: Indices) -> _Nearest:
         v, omega, wind = path.v[rows.piece], path.omega[rows.piece], circles[rows.number, 2:4]
         bend = (0.125 + ROUNDING) * np.abs(v * omega) * rows.steps**2
         motion = advance(rows.heading, v, omega, rows.steps) - wind * rows.steps[:, np.newaxis]
-        gap = _from_origin(rows.place, motion) - radii[rows.number]
+        gap = from_origin(rows.place, motion) - radii[rows.number]
         lower, most = gap - bend - lost[rows.number], min(most, float((gap + bend).min()))
         halved = (lower < most) & (bend > 0.5 * TIGHT)
         settled = np.where(halved, np.inf, lower)
@@ -155,6 +162,16 @@ def _moving(path: Arcs, scenario: Scenario, which: Indices) -> _Nearest:
             best = _Nearest(float(settled[row]), int(which[rows.number[row]]), time)
         rows = rows.halved(halved, v, omega, wind)
     return best
+
+
+def _among(path: Arcs, scenario: Scenario) -> _Nearest:
+    """The least distance from other robots, up to when all of them stand."""
+    nearest = _Nearest()
+    for number, other in enumerate(scenario.others):
+        distance, time = least_distance(path, other.path)
+        gap = distance - scenario.radius - other.radius
+        nearest = min(nearest, _Nearest(gap, None, time, number), key=lambda each: each.gap)
+    return nearest
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,15 +196,6 @@ class _Rows:
             np.concatenate([heading, heading + omega * half]),
             np.tile(half, 2),
         )
-
-
-def _from_origin(places: Floats, motions: Floats) -> Floats:
-    """The distance (r,) of the origin from the segments that begin at `places` (r, 2)."""
-    square = np.sum(motions * motions, axis=1)
-    share = -np.sum(places * motions, axis=1) / np.where(square > 0.0, square, 1.0)
-    nearest = places + np.clip(share, 0.0, 1.0)[:, np.newaxis] * motions
-    distance: Floats = np.hypot(nearest[:, 0], nearest[:, 1])
-    return distance
 
 
 def _room(path: Arcs, bounds: Floats) -> float:

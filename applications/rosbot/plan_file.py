@@ -63,6 +63,7 @@ def _proved(certificate: Certificate) -> dict[str, Any]:
         "clearance": _finite(certificate.clearance),
         "room": _finite(certificate.room),
         "obstacle": certificate.obstacle,
+        "robot": certificate.robot,
         "time": certificate.time,
     }
 

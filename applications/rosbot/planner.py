@@ -14,6 +14,7 @@ from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.following import follow
 from applications.rosbot.guides import top_speed
 from applications.rosbot.model import reached
+from applications.rosbot.others import tracks_of
 from applications.rosbot.reachability import Reachability, reachability
 from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
@@ -196,7 +197,13 @@ def _like(law: Law, position: float, heading: float, step: float) -> Problem:
 
 def _obstacles(scenario: Scenario) -> Obstacles:
     if scenario.is_round:
-        return Obstacles(scenario.circles, scenario.bounds, scenario.radius, field=scenario.field)
+        return Obstacles(
+            scenario.circles,
+            scenario.bounds,
+            scenario.radius,
+            field=scenario.field,
+            tracks=tracks_of(scenario.others, PERIOD),
+        )
     position = ("x", "y", "theta")
     return Obstacles(scenario.circles, scenario.bounds, 0.0, position, scenario.body, scenario.field)
 

@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from applications.rosbot.gaps import gaps_to_room, least_gap
 from applications.rosbot.lags import nominal_path
+from applications.rosbot.others import Other
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats, frozen
 from gpsynth.errors import ScenarioError
@@ -107,7 +108,19 @@ def clearance(scenario: Scenario, trajectory: Floats) -> float:
     gap = least_gap(scenario.body, scenario.circles, poses, t)
     if scenario.room is not None:
         gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
-    return gap
+    return min(gap, *(_gap_to(other, scenario.radius, trajectory) for other in scenario.others), np.inf)
+
+
+def _gap_to(other: Other, radius: float, trajectory: Floats) -> float:
+    """The smallest gap (m) to another robot; whoever has ended stands where it is."""
+    driven = drive(other.start, other.controls, other.durations)
+    times = np.union1d(trajectory[:, 0], driven[:, 0])
+    apart = [
+        np.interp(times, trajectory[:, 0], trajectory[:, axis])
+        - np.interp(times, driven[:, 0], driven[:, axis])
+        for axis in (1, 2)
+    ]
+    return float(np.hypot(*apart).min()) - radius - other.radius
 
 
 def _passed(trajectory: Floats, via: Floats) -> int:

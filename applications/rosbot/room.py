@@ -127,13 +127,13 @@ class Room:
         return cKDTree(np.asarray(self.corner) + self.width * samples)
 
 
-def _numbers(values: Floats) -> Floats:
-    return frozen(np.asarray(values, dtype=np.float64))
-
-
 @lru_cache(maxsize=2)  # a loop asks for the field of one room again and again
 def _field(room: Room, spacing: float, low: tuple[float, ...], high: tuple[float, ...]) -> DistanceField:
     return room.grid(spacing, np.array(low), np.array(high))
+
+
+def _numbers(values: Floats) -> Floats:
+    return frozen(np.asarray(values, dtype=np.float64))
 
 
 def _check_size(box: Floats, width: float) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 
 from applications.rosbot.footprint import inner_radius
 from applications.rosbot.gaps import gaps_at, gaps_to_room
+from applications.rosbot.others import Other
 from applications.rosbot.room import Room
 from gpsynth.arrays import Floats, frozen
 from gpsynth.distance_field import DistanceField
@@ -44,6 +45,7 @@ class Scenario:
         default_factory=lambda: np.zeros((0, 3))
     )  # (f, 3) x m, y m, radius m in the robot's frame; without any it is a disc
     room: Room | None = None  # obstacles at rest that are no circles
+    others: tuple[Other, ...] = ()  # robots whose way is known
     model: str = "unicycle"  # or another of MODELS
     turning_radius: float = 0.0  # m, the least of a car; 0 of others
     position_tolerance: float = 0.05  # m
@@ -160,9 +162,9 @@ def _check_model(scenario: Scenario) -> None:
 
 def _check_footprint(footprint: Floats) -> None:
     for index, (x, y, radius) in enumerate(footprint):
-        if not (max(abs(x), abs(y)) <= MOST and 0.0 < radius <= MOST):
+        if not (max(abs(x), abs(y)) <= MOST and 0.0 <= radius <= MOST):
             raise ScenarioError(
-                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius above 0"
+                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius of at least 0"
             )
 
 
@@ -193,6 +195,19 @@ def _check_places(scenario: Scenario) -> None:
         gap = float(gaps_to_room(scenario.body, scenario.room, scenario.start[np.newaxis])[0])
         if gap < 0.0:
             raise _overlap(scenario, "the map, a polygon or a segment", gap)
+    _check_others(scenario)
+
+
+def _check_others(scenario: Scenario) -> None:
+    if scenario.others and (not scenario.is_round or scenario.model == "dynamic_unicycle"):
+        what = f"a {scenario.model}" if scenario.is_round else "one that is not round"
+        raise ScenarioError(
+            f"among other robots a robot must be round, and a unicycle or a car without lags, not {what}"
+        )
+    for number, other in enumerate(scenario.others):
+        gap = float(np.hypot(*(scenario.start - other.start)[:2])) - scenario.radius - other.radius
+        if gap < 0.0:
+            raise _overlap(scenario, f"other robot {number}", gap)
 
 
 def _overlap(scenario: Scenario, what: str, gap: float) -> ScenarioError:

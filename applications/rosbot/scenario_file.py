@@ -82,14 +82,18 @@ class _Document(Strict):
 def read_scenario(path: str | Path) -> Scenario:
     """The scenario in a file; ScenarioError names the file, the field and the value that is wrong."""
     try:
-        return parse_scenario(_text(Path(path)), name=Path(path).stem, folder=Path(path).parent)
+        return parse_scenario(text_of(Path(path)), name=Path(path).stem, folder=Path(path).parent)
     except ScenarioError as error:
         raise ScenarioError(f"{path}: {error}") from None
 
 
 def parse_scenario(text: str | bytes, *, name: str = "", folder: Path = Path()) -> Scenario:
     """The scenario in a JSON text, called `name` if the text does not name it; its map is looked for in `folder`."""
-    data = _json(text)
+    return scenario_of(json_of(text), name=name, folder=folder)
+
+
+def scenario_of(data: object, *, name: str = "", folder: Path = Path()) -> Scenario:
+    """The same of what `json_of` has read."""
     try:
         document = msgspec.convert(data, _Document)
     except msgspec.ValidationError as error:
@@ -119,7 +123,8 @@ def _scenario(document: _Document, name: str, folder: Path) -> Scenario:
     )
 
 
-def _text(path: Path) -> bytes:
+def text_of(path: Path) -> bytes:
+    """What stands in a file; ScenarioError if it cannot be read or is too large."""
     try:
         check_readable(path)
         with path.open("rb") as file:
@@ -131,7 +136,8 @@ def _text(path: Path) -> bytes:
     return content
 
 
-def _json(text: str | bytes) -> object:
+def json_of(text: str | bytes) -> object:
+    """The value of a JSON text without duplicate fields, NaN or infinity; ScenarioError says what is wrong."""
     try:
         data = json.loads(text, object_pairs_hook=_without_duplicates)
         _check_values(data, "")

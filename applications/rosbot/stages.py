@@ -11,6 +11,10 @@ import numpy as np
 from applications.rosbot.drive_figure import draw_drive
 from applications.rosbot.drive_file import status_of, write_drive
 from applications.rosbot.figures import save_figure
+from applications.rosbot.fleet import FleetReport
+from applications.rosbot.fleet_figure import draw_fleet
+from applications.rosbot.fleet_file import write_fleet
+from applications.rosbot.fleet_search import arrival
 from applications.rosbot.loop import Drive
 from applications.rosbot.map_copy import copy_map
 from applications.rosbot.model import STATES
@@ -115,6 +119,26 @@ def write_drive_run(run: Run, scenario_file: Path, drive: Drive, law: Law, senso
     return (
         f"{scenario.name}: {status_of(drive)}, {check.trajectory[-1, 0]:.2f} s, clearance {check.clearance:.3f} m, "
         f"planning {1e3 * np.median(drive.cycles):.0f} ms a cycle, at most {1e3 * drive.cycles.max():.0f} ms"
+    )
+
+
+def write_fleet_run(run: Run, fleet_file: Path, report: FleetReport) -> str:
+    """The plans of a fleet into a run folder, with their picture; a sentence that says what came of it.
+
+    The plans are written first; a failure after that is a warning on stderr.
+    """
+    path = run.folder / "fleet.json"
+    write_fleet(report, path)
+    copy, picture = run.folder / "scenario.json", path.with_suffix(".png")
+    _besides(path, "its scenario", lambda: write_bytes(copy, fleet_file.read_bytes()), copy)
+    if report.status != "planned":
+        picture.unlink(missing_ok=True)
+        return f"{report.status}, {report.reason}"
+    _besides(path, "its picture", lambda: save_figure(draw_fleet(report), picture), picture)
+    alone = max(map(arrival, report.alone))
+    return (
+        f"{report.status}, last arrival {max(report.arrivals):.2f} s, alone {alone:.2f} s, "
+        f"clearance of any two at least {report.clearance:.4f} m, planned in {report.planning_time:.1f} s"
     )
 
 

@@ -96,17 +96,43 @@ def pass_circles(
     """The least distance of one circle of the body from the obstacles that are circles."""
     for k in range(len(circles)):
         x, y = circles[k, 0] + circles[k, 2] * time, circles[k, 1] + circles[k, 3] * time
-        dx, dy, radius = circles[k, 2] * step, circles[k, 3] * step, circles[k, 4] + body
-        for lane in range(lanes):
-            px, py = w[out + X, lane] - x, w[out + Y, lane] - y
-            qx, qy = w[out + DX, lane] - dx, w[out + DY, lane] - dy
-            square = qx * qx + qy * qy
-            s = -(px * qx + py * qy) / (square if square > 0.0 else 1.0)
-            s = 0.0 if s < 0.0 else (1.0 if s > 1.0 else s)
-            px += s * qx
-            py += s * qy
-            gap = math.sqrt(px * px + py * py) - radius
-            w[out + NEAR, lane] = gap if gap < w[out + NEAR, lane] else w[out + NEAR, lane]
+        pass_disc(w, lanes, out, x, y, circles[k, 2] * step, circles[k, 3] * step, circles[k, 4] + body)
+
+
+@part
+def pass_tracks(w: Floats, lanes: int, out: int, world: World, body: float, time: float, step: float) -> None:
+    """The same of the discs that follow tracks, between whose places no step may turn."""
+    for k in range(len(world.sizes)):
+        x, y = place(world.tracks, k, time / world.tempo)
+        later_x, later_y = place(world.tracks, k, (time + step) / world.tempo)
+        pass_disc(w, lanes, out, x, y, later_x - x, later_y - y, world.sizes[k] + body)
+
+
+@part
+def place(tracks: Floats, k: int, when: float) -> tuple[float, float]:
+    """Where track k is, `when` counted in its periods."""
+    last = tracks.shape[1] - 1
+    first = min(int(when), last)
+    share, second = min(when - first, 1.0), min(first + 1, last)
+    x, y = tracks[k, first, 0], tracks[k, first, 1]
+    return x + share * (tracks[k, second, 0] - x), y + share * (tracks[k, second, 1] - y)
+
+
+@part
+def pass_disc(
+    w: Floats, lanes: int, out: int, x: float, y: float, dx: float, dy: float, radius: float
+) -> None:
+    """The least distance of one circle of the body from a disc that goes from (x, y) by (dx, dy) in the step."""
+    for lane in range(lanes):
+        px, py = w[out + X, lane] - x, w[out + Y, lane] - y
+        qx, qy = w[out + DX, lane] - dx, w[out + DY, lane] - dy
+        square = qx * qx + qy * qy
+        s = -(px * qx + py * qy) / (square if square > 0.0 else 1.0)
+        s = 0.0 if s < 0.0 else (1.0 if s > 1.0 else s)
+        px += s * qx
+        py += s * qy
+        gap = math.sqrt(px * px + py * py) - radius
+        w[out + NEAR, lane] = gap if gap < w[out + NEAR, lane] else w[out + NEAR, lane]
 
 
 @part
@@ -180,6 +206,7 @@ def approach(
             pass_near_circles(w, lanes, out, world, world.body[k, 2])
         else:
             pass_circles(w, lanes, out, world.circles, world.body[k, 2], time, step)
+        pass_tracks(w, lanes, out, world, world.body[k, 2], time, step)
         if len(world.squares) > 0:
             pass_field(w, lanes, out, world.squares, world.grid, world.body[k, 2])
         for lane in range(lanes):

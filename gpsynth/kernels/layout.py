@@ -107,6 +107,9 @@ class World(NamedTuple):
     body: Floats  # (f, 3) circles of the robot: x, y in its own frame, radius
     squares: Floats  # (r, c) m^2, of a distance field; (0, 0) without one
     grid: Floats  # (3,) x, y of its first node and its spacing
+    tracks: Floats  # (r, K, 2) places of discs at every multiple of `tempo`, straight in between
+    sizes: Floats  # (r,) their radii
+    tempo: float  # s
 
 
 class Toll(NamedTuple):
@@ -134,7 +137,11 @@ CONDITIONS = types.NamedTuple((MATRIX, INTEGERS, _INTEGER, VECTOR, TENSOR, INTEG
 CLOCK = types.NamedTuple((VECTOR, VECTOR, _NUMBER, _INTEGER, _INTEGER, _FLAG, _FLAG, _NUMBER, _NUMBER), Clock)
 BUCKETS = types.NamedTuple((INTEGERS, INTEGERS, VECTOR), Buckets)
 WORLD = types.NamedTuple(
-    (INTEGERS, MATRIX, _INTEGER, BUCKETS, VECTOR, _NUMBER, MATRIX, MATRIX, VECTOR), World
+    (
+        *(INTEGERS, MATRIX, _INTEGER, BUCKETS, VECTOR, _NUMBER, MATRIX, MATRIX, VECTOR),
+        *(TENSOR, VECTOR, _NUMBER),
+    ),
+    World,
 )
 TOLL = types.NamedTuple((VECTOR, *[_NUMBER] * 8), Toll)
 

@@ -7,6 +7,8 @@ times the width of F: with slopes in [l, u] it lies below two lines that meet at
 the chord of slope m.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from gpsynth.arrays import Floats
@@ -14,7 +16,7 @@ from gpsynth.checks import check_number
 from gpsynth.distance_field import DistanceField
 from gpsynth.errors import ProblemError
 from gpsynth.intervals import enclose
-from gpsynth.problem import Problem
+from gpsynth.problem import Obstacles, Problem
 from gpsynth.simulation import Trajectory
 
 Box = tuple[Floats, Floats]  # lowest and highest values, (N, n) each
@@ -49,7 +51,7 @@ def certified_clearance(
     nearest = _room(obstacles.bounds, poses[:, :2], lost)
     for circle in obstacles.body:
         centers, turned = _turned(circle, poses, bend, error)
-        gaps = [_gap(other, trajectory.t, centers, lost + turned) for other in obstacles.circles]
+        gaps = [_gap(*other, centers, lost + turned) for other in _discs(obstacles, trajectory.t)]
         if obstacles.field is not None:
             gaps.append(_gap_of_field(obstacles.field, centers, lost + turned))
         nearest = min([nearest, *(gap - circle[2] for gap in gaps)])
@@ -78,15 +80,22 @@ def _gap_of_field(field: DistanceField, centers: Floats, lost: Floats) -> float:
     return float(np.min(gaps - ROUNDING * (np.abs(centers - field.corner).sum(axis=1) + 1.0)))
 
 
-def _gap(circle: Floats, times: Floats, places: Floats, lost: Floats) -> float:
-    """The least distance of the chords from a circle, less what is lost, (N + 1,) for N periods and the last tick."""
-    x, y, vx, vy, radius = circle
-    seen = places - [x, y] - times[:, np.newaxis] * [vx, vy]
+def _discs(obstacles: Obstacles, times: Floats) -> Iterator[tuple[Floats, float]]:
+    """The centers (N + 1, 2) at the ticks and the radius of everything round; in between it goes straight."""
+    for x, y, vx, vy, radius in obstacles.circles:
+        yield [x, y] + times[:, np.newaxis] * [vx, vy], radius
+    if obstacles.tracks is not None:
+        yield from zip(obstacles.tracks.at(times), obstacles.tracks.radii, strict=True)
+
+
+def _gap(others: Floats, radius: float, places: Floats, lost: Floats) -> float:
+    """The least distance of the chords from a disc, less what is lost, (N + 1,) for N periods and the last tick."""
+    seen = places - others
     motion = np.vstack([np.diff(seen, axis=0), [[0.0, 0.0]]])
     square = np.sum(motion * motion, axis=1)
     share = -np.sum(seen * motion, axis=1) / np.where(square > 0.0, square, 1.0)
     nearest = seen + np.clip(share, 0.0, 1.0)[:, np.newaxis] * motion
-    size = np.abs(seen).sum(axis=1) + abs(x) + abs(y) + radius
+    size = np.abs(seen).sum(axis=1) + np.abs(others).sum(axis=1) + radius
     return float(np.min(np.hypot(nearest[:, 0], nearest[:, 1]) - radius - lost - ROUNDING * size))
 
 

@@ -58,8 +58,13 @@ def weighted(problem: Problem, weights: Weights) -> Problem:
         raise ProblemError(f"smoothness and heading weigh the angles of a plant; {plant.name} has none")
     if weights.clearance and (problem.obstacles is None or not len(problem.obstacles.circles)):
         raise ProblemError("clearance is a weight for problems with circles; this one has none")
-    if weights.clearance and problem.obstacles is not None and problem.obstacles.field is not None:
-        raise ProblemError("clearance weighs circles alone; this problem has a distance field")
+    if weights.clearance and problem.obstacles is not None:
+        for what, given in (
+            ("a distance field", problem.obstacles.field),
+            ("tracks", problem.obstacles.tracks),
+        ):
+            if given is not None:
+                raise ProblemError(f"clearance weighs circles alone; this problem has {what}")
     terms = (
         (weights.energy, _energy),
         (weights.smoothness, _smoothness),

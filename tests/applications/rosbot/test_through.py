@@ -94,6 +94,14 @@ def test_places_that_make_no_sense_are_one_sentence(via, sentence):
         plan_through(scene(bounds=[-5.0, 5.0, -5.0, 5.0]), via, law(), effort=QUICK)
 
 
+def test_what_is_allowed_is_for_all_legs():
+    few = Effort(rollouts=3 * 288)
+    report = plan_through(scene(), VIA, law(), seed=1, effort=few)
+    alone = plan_scenario(scene(), [law()], seed=1, effort=few)
+    assert report.ended == "rollouts"
+    assert few.rollouts <= report.evaluations <= alone.evaluations  # a round is not broken off
+
+
 def test_too_little_time_after_a_leg_proves_nothing():
     late = plan_through(scene(circles=[], time_limit=9.0), [[2.0, 1.5, 0.05]], law(), effort=QUICK)
     assert (late.status, late.plan) == ("not_found", None)
@@ -105,11 +113,3 @@ def test_too_little_time_after_a_leg_proves_nothing():
 def test_a_circle_may_fly_off_on_the_way():
     far = scene(circles=[[9e3, 0.0, 1e3, 0.0, 0.2]])
     assert plan_through(far, [[1.0, 0.0, 0.1]], law(), effort=QUICK).status == "planned"
-
-
-def test_what_is_allowed_is_for_all_legs():
-    few = Effort(rollouts=3 * 288)
-    report = plan_through(scene(), VIA, law(), seed=1, effort=few)
-    alone = plan_scenario(scene(), [law()], seed=1, effort=few)
-    assert report.ended == "rollouts"
-    assert few.rollouts <= report.evaluations <= alone.evaluations  # a round is not broken off
