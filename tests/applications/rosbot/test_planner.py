@@ -132,7 +132,7 @@ def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
     few = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, rollouts=300))
     assert (few.status, few.ended) == ("planned", "rollouts")
     assert 300 <= few.evaluations < report.evaluations
-    now = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=0.0))
+    now = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=1e-9))
     assert now.ended == "deadline"
     assert now.evaluations < 300
 
@@ -161,7 +161,7 @@ def test_without_a_plan_the_reason_says_what_has_ended_the_search():
     for ended, words, options in (
         ("complete", "rollouts; ", {"effort": replace(QUICK, attempts=1)}),
         ("rollouts", "rollouts, all that were allowed; ", {"effort": replace(QUICK, rollouts=100)}),
-        ("deadline", "rollouts, when the deadline came; ", {"effort": replace(QUICK, deadline=0.0)}),
+        ("deadline", "rollouts, when the deadline came; ", {"effort": replace(QUICK, deadline=1e-9)}),
         (
             "callback",
             "rollouts, when the search was ended; ",
@@ -325,5 +325,5 @@ def test_schedules_repeat_the_guides_with_noise():
 
 @pytest.mark.parametrize("name", ["deadline", "rollouts"])
 def test_an_effort_is_bounded_by_numbers(name):
-    with pytest.raises(ScenarioError, match=f"{name} of an effort is nan; expected at least 0"):
+    with pytest.raises(ScenarioError, match=f"{name} of an effort is nan; expected"):
         Effort(**{name: np.nan})
