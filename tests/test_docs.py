@@ -118,6 +118,13 @@ def test_the_examples_of_the_planner_run_as_printed():
     assert place["tour"].certificate.is_clear
 
 
+def test_the_planning_page_runs_as_printed():
+    place = run_as_printed("planning.md")
+    assert place["found"].is_free
+    assert 0.0 < place["proved"] < place["found"].clearance
+    assert place["weighed"].value > place["weighed"].arrival_time > place["found"].arrival_time
+
+
 @pytest.mark.slow
 def test_the_guide_runs_as_printed(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

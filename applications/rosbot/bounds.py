@@ -32,7 +32,7 @@ def lower_bound(scenario: Scenario, *, enough: float = np.inf) -> float:
     speed, longest = top_speed(scenario), least
     discs = scenario.discs
     gaps = np.hypot(*(discs[:, :2] - scenario.goal[:2]).T) - discs[:, 2]
-    static = scenario.room is None and scenario.is_static
+    static = scenario.room is None and scenario.is_static and scenario.covers_origin
     if longest <= enough * speed and static and gaps.min(initial=np.inf) > position:
         longest = max([longest, *(route.length - position for route in routes(scenario, count=1))])
     if longest <= enough * speed:

@@ -65,7 +65,7 @@ def certify(
     kept = np.clip(until - begins, 0.0, durations)
     lags = scenario.model == "dynamic_unicycle"
     path = _lagging(scenario, controls, kept) if lags else arcs(scenario.start, controls, kept)
-    moves = np.any(scenario.circles[:, 2:4] != 0.0, axis=1)
+    moves = np.any(scenario.circles[:, 2:4] != 0.0, axis=1) & (len(path.steps) > 0)  # in no time nothing does
     by_arcs, found = scenario.is_round and not lags, list[_Nearest]()
     if by_arcs:
         found += [_at_rest(path, scenario, np.flatnonzero(~moves))]

@@ -5,7 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from applications.rosbot.courses import Course
+from applications.rosbot.footprint import outer_radius, placed
+from applications.rosbot.gaps import gaps_to_room
 from applications.rosbot.loop import CYCLE, Drive
+from applications.rosbot.room_figure import draw_room
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Flags, Sensor, moved
 from gpsynth.arrays import Floats
@@ -47,7 +50,9 @@ def _draw_instant(
     axes.plot(*trajectory[:, 1:3].T, color=BLACK, linewidth=1.2, label="path", zorder=4)
     places = course.schedule.points[:, :2].T
     axes.plot(*places, ".", color=BLUE, markersize=3.0, label="equilibrium points", zorder=4)
-    _draw_robot(axes, trajectory[-1, 1:], scenario.radius, sensor.reach)
+    _draw_robot(axes, trajectory[-1, 1:], scenario.body, sensor.reach)
+    if scenario.room is not None:
+        draw_room(axes, scenario.room)
     circles = moved(scenario.circles, trajectory[-1, 0])
     _draw_circles(axes, circles, sensor.knows(circles, trajectory[-1, 1:3]))
     ends = np.vstack([scenario.start, scenario.goal])[:, :2]
@@ -58,13 +63,14 @@ def _draw_instant(
     axes.set_title(f"{trajectory[-1, 0]:.1f} s", fontsize=9.0)
 
 
-def _draw_robot(axes: "Axes", pose: Floats, radius: float, reach: float) -> None:
+def _draw_robot(axes: "Axes", pose: Floats, body: Floats, reach: float) -> None:
     """The robot with its heading, and how far it sees."""
     from matplotlib.patches import Circle
 
-    x, y, heading = pose
-    nose = x + radius * np.cos(heading), y + radius * np.sin(heading)
-    axes.add_patch(Circle((x, y), radius, facecolor=SKY, edgecolor=BLACK, linewidth=0.6, zorder=5))
+    (x, y, heading), length = pose, outer_radius(body)
+    nose = x + length * np.cos(heading), y + length * np.sin(heading)
+    for center, radius in zip(placed(body, pose[np.newaxis])[0], body[:, 2], strict=True):
+        axes.add_patch(Circle(center, radius, facecolor=SKY, edgecolor=BLACK, linewidth=0.6, zorder=5))
     axes.plot(*np.transpose([(x, y), nose]), color=BLACK, linewidth=0.8, zorder=6)
     axes.add_patch(Circle((x, y), reach, fill=False, edgecolor=GRAY, linestyle=":", linewidth=0.6))
     axes.plot([], [], "o", color=SKY, markeredgecolor=BLACK, markeredgewidth=0.6, label="robot")
@@ -84,15 +90,23 @@ def _draw_circles(axes: "Axes", circles: Floats, known: Flags) -> None:
 
 def _draw_gaps(axes: "Axes", scenario: Scenario, trajectory: Floats, instants: Floats) -> None:
     """The distance to the nearest obstacle over time, with the instants above marked."""
-    time, x, y, _ = trajectory.T
-    gaps = [
-        np.hypot(x - cx - vx * time, y - cy - vy * time) - radius - scenario.radius
-        for cx, cy, vx, vy, radius in scenario.circles
-    ]
-    if gaps:
-        axes.plot(time, np.min(gaps, axis=0), color=GREEN, linewidth=1.2)
+    gaps = _gaps(scenario, trajectory)
+    if np.all(np.isfinite(gaps)):
+        axes.plot(trajectory[:, 0], gaps, color=GREEN, linewidth=1.2)
     axes.axhline(0.0, color=RED, linewidth=0.8)
     for instant in instants:
         axes.axvline(instant, color=PALE, linewidth=0.6, zorder=0)
     axes.set_xlabel("$t$ (s)")
     axes.set_ylabel("clearance (m)")
+
+
+def _gaps(scenario: Scenario, trajectory: Floats) -> Floats:
+    """The distances (N,) along a trajectory (N, 4); infinity without obstacles."""
+    time, poses, body = trajectory[:, 0], trajectory[:, 1:], scenario.body
+    gaps = np.full(len(time), np.inf)
+    for (x, y), size in zip(placed(body, poses).transpose(1, 2, 0), body[:, 2], strict=True):
+        for cx, cy, vx, vy, radius in scenario.circles:
+            gaps = np.minimum(gaps, np.hypot(x - cx - vx * time, y - cy - vy * time) - radius - size)
+    if scenario.room is not None:
+        gaps = np.minimum(gaps, gaps_to_room(body, scenario.room, poses))
+    return gaps

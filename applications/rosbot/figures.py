@@ -24,9 +24,17 @@ COLUMN = 3.5  # inches, width of a column of a paper
 
 
 def draw_plan(
-    scenario: Scenario, trajectory: Floats, controls: Floats, period: float, waypoints: Floats
+    scenario: Scenario,
+    trajectory: Floats,
+    controls: Floats,
+    period: float,
+    waypoints: Floats,
+    via: Floats = np.empty((0, 3)),
 ) -> "Figure":
-    """The figure of a plan: trajectory (N, 4) t, x, y, theta; controls (M, 2), one pair a period; waypoints (k, 3)."""
+    """The figure of a plan: trajectory (N, 4) t, x, y, theta; controls (M, 2), one pair a period; waypoints (k, 3).
+
+    `via` (m, 3) are places passed on the way: x, y and tolerance in m.
+    """
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
@@ -34,8 +42,9 @@ def draw_plan(
         figure = Figure(figsize=(COLUMN, 1.5 * COLUMN), layout="constrained")
         above, below = figure.subplots(2, 1, height_ratios=(2.6, 1.0))
         draw_path(above, scenario, trajectory, waypoints)
+        _draw_via(above, via)
         handles, labels = above.get_legend_handles_labels()
-        columns = 4 if len(labels) > 5 else 5
+        columns = 4 if len(labels) > 6 else 3
         figure.legend(
             handles, labels, loc="outside upper center", ncols=columns, columnspacing=1.2, handlelength=1.6
         )
@@ -62,7 +71,7 @@ def draw_path(axes: "Axes", scenario: Scenario, trajectory: Floats, waypoints: F
     _draw_waypoints(axes, scenario, waypoints)
     _draw_obstacles(axes, scenario, trajectory[-1, 0])
     if scenario.room is not None:
-        draw_room(axes, scenario.room)
+        draw_room(axes, scenario.room, label="" if len(scenario.circles) else "obstacle")
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.1)
     axes.set_xlabel("$x$ (m)")
@@ -122,6 +131,16 @@ def _draw_waypoints(axes: "Axes", scenario: Scenario, waypoints: Floats) -> None
             color=BLUE,
             fontsize=7,
         )
+
+
+def _draw_via(axes: "Axes", via: Floats) -> None:
+    """The places passed on the way, each as large as its tolerance."""
+    from matplotlib.patches import Circle
+
+    for x, y, tolerance in via:
+        axes.add_patch(Circle((x, y), tolerance, fill=False, edgecolor=RED, linewidth=0.9, zorder=5))
+    if len(via):
+        axes.plot([], [], "o", color="none", markeredgecolor=RED, label="via")
 
 
 def _draw_obstacles(axes: "Axes", scenario: Scenario, end: float) -> None:

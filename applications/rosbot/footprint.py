@@ -13,7 +13,8 @@ def rectangle_circles(length: float, width: float, center: tuple[float, float] =
     Each covers one of equal parts, a rectangle whose corners it goes through. length (m) is along the robot's axis,
     width across; `center` is in the robot's frame.
     """
-    square = min(4.0 * EXCESS, length, width)  # whose circle sticks out by less than EXCESS
+    # parts of this size stick out by less than EXCESS, and those of half of it however narrow they are
+    square = max(min(4.0 * EXCESS, length, width), 2.0 * EXCESS)
     columns, rows = min(
         (
             (columns, rows)

@@ -1,10 +1,11 @@
 """The map of a scenario beside a copy of it, so that the copy can be read."""
 
+import json
 from pathlib import Path
 
 from applications.rosbot.map_yaml import read_settings
 from gpsynth.errors import FileError
-from gpsynth.files import make_folder, read_json, write_bytes
+from gpsynth.files import make_folder, write_bytes
 
 
 def copy_map(scenario_file: Path, folder: Path) -> None:
@@ -12,7 +13,7 @@ def copy_map(scenario_file: Path, folder: Path) -> None:
 
     Raises FileError if that is not possible.
     """
-    part = read_json(scenario_file).get("map")
+    part = json.loads(_content(scenario_file)).get("map")
     if part is None:
         return
     described = Path(part["file"])

@@ -272,8 +272,9 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
 def _followed(
     report: PlanReport, previous: Plan, law: Law, elapsed: float, effort: Effort
 ) -> Iterator[Found]:
-    """Plans near what is left of the previous one."""
-    if not len(previous.schedule.dwell):
+    """Plans near what is left of the previous one; none if that was to stay, or of a robot with other states."""
+    plant = plant_of(report.scenario)
+    if not len(previous.schedule.dwell) or law.plant.state_names != plant.state_names:
         return iter(())
     [(problem, law)] = _problems(report.scenario, [law])
     return follow(problem, law, previous, elapsed, effort.followers, report.seed)

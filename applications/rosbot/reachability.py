@@ -46,9 +46,13 @@ def reachability(scenario: Scenario) -> Reachability:
     """Whether some way leads from the start into the goal's tolerance, the time limit aside.
 
     "unreachable" is proved for any robot no larger than this one's body, whatever its limits. "reachable" is proved for
-    obstacles at rest and limits that let a round robot stand, drive and turn by themselves; otherwise it is
+    obstacles at rest and a round unicycle whose limits let it stand, drive and turn by themselves; otherwise it is
     "undecided". In a room it is a matter of floods (`floods.py`).
     """
+    if not scenario.covers_origin:
+        return Reachability(
+            "undecided", "the robot's origin is outside of its body, and may be in an obstacle"
+        )
     if scenario.field is not None:
         return Reachability(*flooded(scenario, scenario.field))
     fixed = scenario.discs[~np.any(scenario.circles[:, 2:4], axis=1)]
@@ -73,6 +77,10 @@ def _route(scenario: Scenario, larger: Floats) -> Reachability:
     if not scenario.is_round:
         return Reachability(
             "undecided", "a route is free for a disc within the body; the rest of it is not tested"
+        )
+    if scenario.model != "unicycle":
+        return Reachability(
+            "undecided", "a route is free for a robot that stands and turns in place; this one does not"
         )
     standing = scenario.speed_limits[0] <= 0.0 <= scenario.speed_limits[1]
     if not standing or not scenario.turn_limits[0] <= 0.0 <= scenario.turn_limits[1]:

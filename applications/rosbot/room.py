@@ -1,7 +1,7 @@
 """A mapped room: occupied cells, polygons and segments, with their exact distances and a field of them."""
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -30,8 +30,8 @@ class Room:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "cells", frozen(np.asarray(self.cells, dtype=np.bool_)))
-        object.__setattr__(self, "polygons", tuple(frozen(np.asarray(each)) for each in self.polygons))
-        object.__setattr__(self, "segments", frozen(np.asarray(self.segments).reshape(-1, 4)))
+        object.__setattr__(self, "polygons", tuple(map(_numbers, self.polygons)))
+        object.__setattr__(self, "segments", frozen(_numbers(self.segments).reshape(-1, 4)))
         if not (self.cells.any() or self.polygons or len(self.segments)):
             raise ScenarioError(
                 "the room is empty: its map has no occupied cell, and there is nothing else in it"
@@ -78,10 +78,17 @@ class Room:
     def field(self, spacing: float, places: Floats | None = None) -> DistanceField:
         """The distance field, its nodes at most `spacing` (m) apart, or as far as MOST_NODES allow.
 
-        It reaches AROUND (m) beyond all there is and beyond the places (n, 2).
+        It reaches AROUND (m) beyond all there is and beyond the places (n, 2), these taken to whole meters, so that
+        scenes of one room share a field.
         """
-        points = self.box if places is None else np.vstack([self.box, places])
-        low, high = points.min(axis=0) - AROUND, points.max(axis=0) + AROUND
+        low, high = self.box
+        if places is not None:
+            low = np.minimum(low, np.floor(places.min(axis=0)))
+            high = np.maximum(high, np.ceil(places.max(axis=0)))
+        return _field(self, spacing, tuple((low - AROUND).tolist()), tuple((high + AROUND).tolist()))
+
+    def grid(self, spacing: float, low: Floats, high: Floats) -> DistanceField:
+        """The distance field from one corner (2,) to another."""
         _check_size(np.stack([low, high]), self.width)
         least = float(np.sqrt(np.prod(high - low + self.width) / MOST_NODES))
         parts = max(1, int(np.ceil(self.width / max(spacing, least) - 1e-9)))
@@ -118,6 +125,15 @@ class Room:
         along = [upright + shares * [0.0, 1.0], level + shares * [1.0, 0.0]]
         samples = np.unique(np.concatenate([part.reshape(-1, 2) for part in along]), axis=0)
         return cKDTree(np.asarray(self.corner) + self.width * samples)
+
+
+@lru_cache(maxsize=2)  # a loop asks for the field of one room again and again
+def _field(room: Room, spacing: float, low: tuple[float, ...], high: tuple[float, ...]) -> DistanceField:
+    return room.grid(spacing, np.array(low), np.array(high))
+
+
+def _numbers(values: Floats) -> Floats:
+    return frozen(np.asarray(values, dtype=np.float64))
 
 
 def _check_size(box: Floats, width: float) -> None:

@@ -11,14 +11,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def draw_room(axes: "Axes", room: Room) -> None:
-    """Cells and polygons filled like circles, segments as lines."""
+def draw_room(axes: "Axes", room: Room, label: str = "") -> None:
+    """Cells and polygons filled, segments as lines, under a label of the legend if one is given."""
     from matplotlib.collections import LineCollection
     from matplotlib.colors import ListedColormap
     from matplotlib.patches import Polygon
 
     if room.cells.any():
         (left, below), (rows, columns) = room.corner, room.cells.shape
+        axes.use_sticky_edges = False  # or the outermost cells are cut off
         axes.imshow(
             np.ma.masked_equal(room.cells, False),
             cmap=ListedColormap([GRAY]),
@@ -32,3 +33,5 @@ def draw_room(axes: "Axes", room: Room) -> None:
     axes.add_collection(
         LineCollection(list(room.segments.reshape(-1, 2, 2)), colors=BLACK, linewidths=1.2, zorder=2)
     )
+    if label:
+        axes.plot([], [], "s", color=GRAY if room.cells.any() else PALE, markeredgecolor=BLACK, label=label)

@@ -15,6 +15,7 @@ from gpsynth.errors import ScenarioError
 
 MOST = 1e4  # m, s: what is larger is a slip of the pen, and no plan for it ends
 FASTEST = 100.0  # m/s, rad/s
+SLOWEST = 1e-6  # m/s, rad/s: with less no plan comes to its end within MOST
 MODELS = ("unicycle", "dynamic_unicycle", "car")
 FINE, COARSE = (
     0.01,
@@ -40,7 +41,7 @@ class Scenario:
         default_factory=lambda: np.zeros((0, 5))
     )  # (c, 5) x m, y m, vx m/s, vy m/s, radius m
     radius: float = 0.15  # m, of the robot; of another body than a disc the largest around its origin
-    body: Floats = field(
+    footprint: Floats = field(
         default_factory=lambda: np.zeros((0, 3))
     )  # (f, 3) x m, y m, radius m in the robot's frame; without any it is a disc
     room: Room | None = None  # obstacles at rest that are no circles
@@ -60,21 +61,24 @@ class Scenario:
             ("goal", (3,)),
             ("bounds", (4,)),
             ("circles", (-1, 5)),
-            ("body", (-1, 3)),
+            ("footprint", (-1, 3)),
         ):
             object.__setattr__(self, name, frozen(_shaped(name, getattr(self, name), shape)))
         for name in ("speed_limits", "turn_limits"):
             low, high = _shaped(name, getattr(self, name), (2,))
             object.__setattr__(self, name, (float(low), float(high)))
-        if len(self.body):
-            _check_body(self.body)
-            object.__setattr__(self, "radius", inner_radius(self.body))
+        if len(self.footprint):
+            _check_footprint(self.footprint)
+            object.__setattr__(self, "radius", inner_radius(self.footprint))
         _check_numbers(self)
         _check_model(self)
         _check_obstacles(self)
-        if not len(self.body):
-            object.__setattr__(self, "body", frozen(np.array([[0.0, 0.0, self.radius]])))
         _check_places(self)
+
+    @cached_property
+    def body(self) -> Floats:
+        """The circles (f, 3) of the robot in its frame: its footprint, or the one disc that it is."""
+        return self.footprint if len(self.footprint) else frozen(np.array([[0.0, 0.0, self.radius]]))
 
     @property
     def discs(self) -> Floats:
@@ -90,6 +94,11 @@ class Scenario:
     def is_round(self) -> bool:
         """Whether the robot is a disc around its origin."""
         return len(self.body) == 1 and not np.any(self.body[:, :2])
+
+    @property
+    def covers_origin(self) -> bool:
+        """Whether the origin of the robot's frame is part of its body, so that it must not be in an obstacle."""
+        return bool(np.any(np.hypot(self.body[:, 0], self.body[:, 1]) <= self.body[:, 2]))
 
     @cached_property
     def field(self) -> DistanceField | None:
@@ -130,6 +139,12 @@ def _check_numbers(scenario: Scenario) -> None:
     for name, (low, high) in pairs.items():
         if not low < high:
             raise ScenarioError(f"{name} are [{low:g}, {high:g}]; the first must be less than the second")
+    for name in ("limits of v", "limits of omega"):
+        low, high = pairs[name]
+        if max(-low, high) < SLOWEST:
+            raise ScenarioError(
+                f"{name} are [{low:g}, {high:g}]; expected one of at least {SLOWEST:g} in size"
+            )
 
 
 def _check_model(scenario: Scenario) -> None:
@@ -145,11 +160,11 @@ def _check_model(scenario: Scenario) -> None:
         )
 
 
-def _check_body(body: Floats) -> None:
-    for index, (x, y, radius) in enumerate(body):
-        if not (max(abs(x), abs(y)) <= MOST and 0.0 < radius <= MOST):
+def _check_footprint(footprint: Floats) -> None:
+    for index, (x, y, radius) in enumerate(footprint):
+        if not (max(abs(x), abs(y)) <= MOST and 0.0 <= radius <= MOST):
             raise ScenarioError(
-                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius above 0"
+                f"circle {index} of the robot is [{x:g}, {y:g}, {radius:g}]; expected x, y and a radius of at least 0"
             )
 
 

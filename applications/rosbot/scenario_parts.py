@@ -74,7 +74,7 @@ class Body(TypedDict, total=False):
     """What a scenario knows of the robot's body."""
 
     radius: float
-    body: Floats
+    footprint: Floats
 
 
 Obstacle = Circle | Segment | Polygon
@@ -117,12 +117,12 @@ def body_of(footprint: Footprint) -> Body:
             raise ScenarioError(
                 f"robot.footprint.circles are {len(footprint.circles)}; expected 1 to {MOST_PARTS}"
             )
-        return {"body": np.array(footprint.circles)}
+        return {"footprint": np.array(footprint.circles)}
     for name in ("length", "width"):
         side = getattr(footprint, name)
         if not 0.0 < side <= 1.0:
             raise ScenarioError(f"robot.footprint.{name} is {side:g}; expected a number above 0, at most 1 m")
-    return {"body": rectangle_circles(footprint.length, footprint.width, footprint.center)}
+    return {"footprint": rectangle_circles(footprint.length, footprint.width, footprint.center)}
 
 
 def _corners(index: int, polygon: Polygon) -> Floats:

@@ -5,10 +5,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from applications.rosbot.scenario import Scenario
+from applications.rosbot.gaps import gaps_at, gaps_to_room
+from applications.rosbot.scenario import MOST, Scenario
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ScenarioError
+
+TOUCHING = 1e-9  # m that what is shrunk keeps off, so that no rounding undoes it
 
 Flags = npt.NDArray[np.bool_]
 
@@ -45,24 +48,36 @@ class Sensor:
 
 
 def moved(circles: Floats, time: float) -> Floats:
-    """The circles (c, 5) after a time (s)."""
+    """The circles (c, 5) after a time (s); one that has left what a scenario may reach is at its edge for good."""
     later = circles.copy()
-    later[:, :2] += time * later[:, 2:4]
+    later[:, :2] = np.clip(later[:, :2] + time * later[:, 2:4], -MOST, MOST)
     return later
 
 
 def scene_ahead(scenario: Scenario, circles: Floats, pose: Floats, delay: float) -> Scenario:
     """The scenario as it will be after a delay (s): from a pose (3,) there, with the circles (c, 5) moved on.
 
-    A circle that the robot would overlap is shrunk until it does not, and a pose out of bounds is moved inside: where
-    it should not be it is all the same, and has to leave.
+    A circle that the robot would overlap is shrunk until it does not, a robot that would overlap the room is made
+    thinner, and a pose out of bounds is moved inside: where it should not be it is all the same, and has to leave.
     """
     later = moved(circles, delay)
     low, high = scenario.bounds.reshape(2, 2).T
     start = np.append(np.clip(pose[:2], low, high), np.remainder(pose[2] + np.pi, 2.0 * np.pi) - np.pi)
-    gap = np.hypot(*(later[:, :2] - start[:2]).T) * (1.0 - 1e-9) - scenario.radius
-    later[:, 4] = np.minimum(later[:, 4], gap)
-    return replace(scenario, start=start, circles=later[gap >= 0.0])
+    slim = _thinned(scenario, start)
+    fits = gaps_at(slim.body, later, start) + later[:, 4] - TOUCHING
+    later[:, 4] = np.minimum(later[:, 4], fits)
+    return replace(slim, start=start, circles=later[fits >= 0.0])
+
+
+def _thinned(scenario: Scenario, pose: Floats) -> Scenario:
+    """The scenario for a robot thin enough for a pose (3,) in the room; where no robot is, without the room."""
+    if scenario.room is None:
+        return scenario
+    gap = float(gaps_to_room(scenario.body, scenario.room, pose[np.newaxis])[0])
+    if gap >= 0.0:
+        return scenario
+    thin = scenario.body + np.array([0.0, 0.0, gap - TOUCHING])
+    return replace(scenario, footprint=thin) if np.all(thin[:, 2] > 0.0) else replace(scenario, room=None)
 
 
 def _moves(circles: Floats) -> Flags:

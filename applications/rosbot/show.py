@@ -48,6 +48,7 @@ class SavedPlan(msgspec.Struct):
     controls: list[tuple[Number, Number]] = []
     trajectory: list[tuple[Duration, Number, Number, Number]] = []
     schedule: SavedSchedule | None = None
+    via: list[tuple[Number, Number, Duration]] = []  # m
 
     def __post_init__(self) -> None:
         if self.is_found and (self.arrival_time is None or not self.trajectory):
@@ -95,6 +96,7 @@ def redraw(plan_file: Path) -> Path | None:
         np.array(plan.controls),
         plan.control_period,
         _waypoints(plan),
+        np.array(plan.via).reshape(-1, 3),
     )
     save_figure(figure, picture)
     return picture

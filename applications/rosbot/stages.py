@@ -112,6 +112,7 @@ def write_drive_run(run: Run, scenario_file: Path, drive: Drive, law: Law, senso
     """A drive into a run folder, with its picture and a copy of its scenario; a line that says what came of it."""
     scenario, path = read_scenario(scenario_file), run.folder / "drive.json"
     write_bytes(run.folder / "scenario.json", scenario_file.read_bytes())
+    copy_map(scenario_file, run.folder)
     write_drive(drive, law, seed, path)
     save_figure(draw_drive(scenario, drive, sensor), path.with_suffix(".png"))
     check = drive.replay

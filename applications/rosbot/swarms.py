@@ -13,6 +13,8 @@ from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import anywhere, nearby, repeated, schedules_along
 from applications.rosbot.vehicles import pose_plans
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_number
+from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Particles, Plan, PlanSettings, Weights
 from gpsynth.problem import Problem
@@ -44,6 +46,12 @@ class Effort:
     attempts: int = 3  # with other random numbers and twice the time budget, while nothing is found
     rollouts: float = inf  # after which the best plan so far is given
     deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
+
+    def __post_init__(self) -> None:
+        for name in ("rollouts", "deadline"):
+            check_number(f"the {name} of an effort", getattr(self, name))
+            if not getattr(self, name) > 0.0:
+                raise ScenarioError(f"{name} of an effort is {getattr(self, name)}; expected more than 0")
 
 
 @dataclass(frozen=True, eq=False)

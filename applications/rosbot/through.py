@@ -8,8 +8,10 @@ import numpy.typing as npt
 
 from applications.rosbot.certificate import certify
 from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
+from applications.rosbot.reachability import reachability
 from applications.rosbot.replay import replay
-from applications.rosbot.scenario import Scenario
+from applications.rosbot.scenario import MOST, Scenario
+from applications.rosbot.sensing import moved
 from applications.rosbot.swarms import Effort
 from applications.rosbot.vehicles import steered
 from gpsynth.arrays import Floats
@@ -43,7 +45,8 @@ def plan_through(
     """A plan that comes within the third number (m) of every place in `via` (m, 3), in their order, and then arrives.
 
     Each leg is planned by itself, in least time and with any heading at its end; the whole is replayed and certified.
-    Bounds of `effort` are those of a leg. Where a leg has no plan, the reason says which. Raises ScenarioError if a
+    What `effort` allows is for all legs: each gets an equal share of what is left. Where a leg has no plan, the reason
+    says which. Raises ScenarioError if a
     place is out of bounds or its tolerance not positive, and KeyboardInterrupt if Ctrl-C ends a leg.
     """
     through = check_via(scenario, via)
@@ -55,7 +58,8 @@ def plan_through(
         goal = scenario.goal if number == len(through) else np.append(through[number, :2], headings[number])
         widths = (through[number, 2], ANY_HEADING) if number < len(through) else _tolerance(scenario)
         leg = replace(now, goal=goal, position_tolerance=float(widths[0]), heading_tolerance=widths[1])
-        found = plan_scenario(leg, [law], seed=seed, effort=effort, threads=threads)
+        share = _share(effort, report, len(through) + 1 - number)
+        found = plan_scenario(leg, [law], seed=seed, effort=share, threads=threads)
         spent += found.evaluations
         report = replace(
             report,
@@ -67,7 +71,10 @@ def plan_through(
             raise KeyboardInterrupt
         if found.plan is None:
             where = f"via-point {number}" if number < len(through) else "the goal"
-            return replace(report, status=found.status, reason=f"on the way to {where}: {found.reason}")
+            status, reason = found.status, f"on the way to {where}: {found.reason}"
+            if number and reachability(leg).status != "unreachable":
+                status = "not_found"  # too late is only what the legs so far have left no time for
+            return replace(report, status=status, reason=reason, plan=None, law=None)
         legs.append(_leg(found, goal))
         now = _later(now, legs[-1])
         report = replace(report, plan=found.plan, law=found.law)
@@ -85,11 +92,24 @@ def check_via(scenario: Scenario, via: npt.ArrayLike) -> Floats:
         )
     low, high = scenario.bounds[[0, 2]], scenario.bounds[[1, 3]]
     for number, (x, y, tolerance) in enumerate(places):
+        if np.any(np.abs(places[number]) > MOST):
+            raise ScenarioError(
+                f"via-point {number} is {places[number].tolist()}; expected numbers within ±{MOST:g}"
+            )
         if not tolerance > 0.0:
             raise ScenarioError(f"via-point {number} has tolerance {tolerance:g} m; expected more than 0")
         if np.any((places[number, :2] < low) | (places[number, :2] > high)):
             raise ScenarioError(f"via-point {number} ({x:g}, {y:g}) lies outside the bounds")
     return places
+
+
+def _share(effort: Effort, report: PlanReport, legs: int) -> Effort:
+    """The effort for the next of so many legs, after what the report says has been spent."""
+    return replace(
+        effort,
+        rollouts=max(1.0, (effort.rollouts - report.evaluations) / legs),
+        deadline=max(1e-3, (effort.deadline - report.planning_time) / legs),
+    )
 
 
 def _headings(scenario: Scenario, via: Floats) -> Floats:
@@ -119,8 +139,7 @@ def _leg(found: PlanReport, goal: Floats) -> _Leg:
 def _later(scenario: Scenario, leg: _Leg) -> Scenario:
     """What is left after a leg: the robot where it is then, circles where they are, less time."""
     elapsed = PERIOD * len(leg.path.u)
-    circles = scenario.circles.copy()
-    circles[:, :2] += elapsed * circles[:, 2:4]
+    circles = moved(scenario.circles, elapsed)
     left = max(scenario.time_limit - elapsed, PERIOD)
     return replace(scenario, start=leg.path.x[-1], circles=circles, time_limit=left)
 

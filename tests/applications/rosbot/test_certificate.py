@@ -15,6 +15,7 @@ from applications.rosbot.plan_file import plan_document
 from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import SATURATING, polar_law
 from applications.rosbot.replay import replay
+from applications.rosbot.room import Room
 from applications.rosbot.scenario import Scenario
 from gpsynth.planning import PlanSettings
 from tests.bench.certificates import ROUNDED, judged
@@ -144,3 +145,17 @@ def test_nothing_that_is_not_proved_is_called_planned(monkeypatch):
     report = plan_scenario(block, [law], seed=1, effort=QUICK)
     assert (report.status, report.plan, report.certificate) == ("not_found", None, None)
     assert plan_document(report)["certificate"] is None
+
+
+def test_a_robot_that_stays_is_as_far_from_what_moves_as_it_is_now():
+    found = certify(scene([1.0, 0.0, 0.1, 0.0, 0.2], radius=0.15), np.empty((0, 2)), 0.05)
+    assert found.clearance == pytest.approx(0.65, abs=1e-12)
+    assert found.obstacle == 0
+
+
+@pytest.mark.parametrize("radius", [0.0, 1e-9, 1e-7])
+@pytest.mark.parametrize("speed", [0.5, 0.49, 0.4])
+def test_however_small_a_robot_it_does_not_pass_a_wall(radius, speed):
+    wall = Room(segments=np.array([[1.0, -1.0, 1.0, 1.0]]))
+    found = certify(scene(room=wall, radius=radius), np.tile([speed, 0.0], (80, 1)), 0.05)
+    assert not found.is_clear

@@ -7,6 +7,7 @@ from matplotlib.patches import Circle
 
 from applications.rosbot.drive_figure import INSTANTS, draw_drive
 from applications.rosbot.loop import drive_scenario
+from applications.rosbot.room import Room
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Sensor
 from applications.rosbot.stabilizer import default_law
@@ -28,3 +29,18 @@ def test_circles_are_where_they_then_are_and_pale_once_out_of_sight():
         colors.append(to_hex(found[0.25].get_facecolor()).upper())
     assert (colors[0], colors[-1]) == (ORANGE, PALE)
     assert len(figure.axes) == INSTANTS + 1
+
+
+def test_a_room_and_all_of_the_body_are_drawn_and_count():
+    body, block = (
+        np.array([[0.2, 0.0, 0.1], [-0.1, 0.0, 0.1]]),
+        np.array([[0.5, 1.0], [1.0, 1.0], [1.0, 2.0]]),
+    )
+    room = Room(polygons=(block,), segments=np.array([[-1.0, -0.4, 2.0, -0.4]]))
+    scene = Scenario([0.0, 0.0, 0.0], [3.0, 0.0, 0.0], footprint=body, room=room, time_limit=0.2)
+    drive = drive_scenario(scene, default_law(), settings=None)
+    axes, *_, below = draw_drive(scene, drive, Sensor()).axes
+    centers = [patch.center for patch in axes.patches if getattr(patch, "radius", None) == pytest.approx(0.1)]
+    assert np.allclose(centers, [[0.2, 0.0], [-0.1, 0.0]])
+    assert any(patch.get_path().vertices[:3].tolist() == block.tolist() for patch in axes.patches)
+    assert below.lines[0].get_ydata()[0] == pytest.approx(0.3)  # from the segment

@@ -4,12 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from applications.rosbot.figures import FOOTPRINTS, draw_controls, draw_path, draw_plan, save_figure
+from applications.rosbot.room import Room
 from applications.rosbot.scenario import Scenario
 from gpsynth.errors import FileError
+from gpsynth.plotting import STYLE
 
 PERIOD = 0.1
 SCENARIO = Scenario(
@@ -74,6 +77,38 @@ def test_nothing_is_drawn_for_what_is_not_there(ax):
     empty = replace(SCENARIO, circles=np.empty((0, 5)))
     labels = _lines(draw_path(ax, empty, TRAJECTORY, np.empty((0, 3))))
     assert not {"obstacle", "equilibrium points"} & set(labels)
+
+
+@pytest.mark.parametrize("circles", [SCENARIO.circles, np.empty((0, 5))], ids=["circles", "none"])
+@pytest.mark.parametrize("room", [None, Room(np.ones((1, 2), dtype=bool))], ids=["open", "room"])
+def test_the_legend_has_all_and_is_within_the_figure(circles, room):
+    scenario = replace(SCENARIO, circles=circles, start=np.array([-1.0, 0.0, 0.0]), room=room)
+    figure = draw_plan(scenario, TRAJECTORY, CONTROLS, PERIOD, WAYPOINTS, np.array([[0.5, 0.0, 0.1]]))
+    [legend] = figure.legends
+    labels = {text.get_text() for text in legend.get_texts()}
+    assert "via" in labels
+    assert ("obstacle" in labels) == (len(circles) > 0 or room is not None)
+    figure.set_dpi(300)  # as it is written; glyphs are wider on coarser grids
+    with rc_context(dict(STYLE)):
+        figure.draw_without_rendering()
+        box = legend.get_window_extent()
+    assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+
+
+def test_places_on_the_way_are_as_large_as_their_tolerance():
+    figure = draw_plan(SCENARIO, TRAJECTORY, CONTROLS, PERIOD, WAYPOINTS, np.array([[0.7, 0.1, 0.05]]))
+    assert _circles(figure.axes[0], 0.05) == {(0.7, 0.1)}
+
+
+def test_the_outermost_cells_of_a_room_are_not_cut_off(ax):
+    room = Room(np.ones((4, 6), dtype=bool), corner=(-3.0, 2.0), width=0.5)
+    draw_path(ax, replace(SCENARIO, room=room), TRAJECTORY, WAYPOINTS)
+    ax.apply_aspect()
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    assert left < -3.0
+    assert right > 0.0
+    assert low < -1.0
+    assert high > 4.0
 
 
 def test_a_figure_is_written_as_png(tmp_path):

@@ -48,5 +48,5 @@ def test_outside_of_the_room_a_way_leads_around_unless_the_bounds_forbid_it():
 
 def test_only_what_is_sure_is_said_of_other_bodies():
     long = np.array([[-0.3, 0.0, 0.15], [0.0, 0.0, 0.15], [0.3, 0.0, 0.15]])
-    assert reachability(scene(1.2, body=long)).status == "undecided"
-    assert reachability(scene(0.0, body=long)).status == "unreachable"
+    assert reachability(scene(1.2, footprint=long)).status == "undecided"
+    assert reachability(scene(0.0, footprint=long)).status == "unreachable"

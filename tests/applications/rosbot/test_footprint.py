@@ -46,8 +46,15 @@ def test_inner_and_outer_discs_bound_the_body():
 def test_a_scenario_takes_a_body_and_checks_it():
     start, goal = [0.0, 0.0, 0.5 * np.pi], [3.0, 0.0, 0.0]
     body, wall = np.array([[0.3, 0.0, 0.1], [0.0, 0.0, 0.1]]), [[0.0, 0.45, 0.0, 0.0, 0.1]]
-    assert Scenario(start, goal, body=body).radius == pytest.approx(0.1)
+    assert Scenario(start, goal, footprint=body).radius == pytest.approx(0.1)
     with pytest.raises(ScenarioError, match=r"overlaps obstacles\[0\] by 0.05 m with the robot's footprint"):
-        Scenario(start, goal, body=body, circles=wall)
+        Scenario(start, goal, footprint=body, circles=wall)
     with pytest.raises(ScenarioError, match=r"circle 1 of the robot is \[0, 0, -1\]"):
-        Scenario(start, goal, body=np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]))
+        Scenario(start, goal, footprint=np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]))
+
+
+@pytest.mark.parametrize("thin", [1e-12, 1e-3])
+def test_a_thin_rectangle_takes_no_longer(thin):
+    circles = rectangle_circles(thin, 1.0)
+    assert len(circles) == 17
+    assert np.all(circles[:, 2] <= 0.5 * thin + 0.03)

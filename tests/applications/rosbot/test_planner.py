@@ -137,6 +137,12 @@ def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
     assert now.evaluations < 300
 
 
+@pytest.mark.parametrize("wrong", [{"deadline": np.nan}, {"deadline": 0.0}, {"rollouts": -1}])
+def test_an_effort_allows_something(wrong):
+    with pytest.raises(ScenarioError, match="expected more than 0"):
+        Effort(**wrong)
+
+
 def test_an_interrupted_search_gives_the_best_plan_so_far():
     def interrupt(report):
         if report.status == wanted:
@@ -315,3 +321,9 @@ def test_schedules_repeat_the_guides_with_noise():
     assert np.array_equal(schedules[1].points, along(guides[1], 4).points)
     assert not np.array_equal(schedules[2].points, schedules[0].points)
     assert np.array_equal(nearby(schedules[0], 3, 0.1, stream(2))[0].points, schedules[0].points)
+
+
+@pytest.mark.parametrize("name", ["deadline", "rollouts"])
+def test_an_effort_is_bounded_by_numbers(name):
+    with pytest.raises(ScenarioError, match=f"{name} of an effort is nan; expected at least 0"):
+        Effort(**{name: np.nan})

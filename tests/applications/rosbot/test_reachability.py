@@ -1,7 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.ndimage import label
 
+from applications.rosbot.bounds import lower_bound
+from applications.rosbot.certificate import certify
 from applications.rosbot.reachability import reachability
 from applications.rosbot.scenario import Scenario
 
@@ -159,3 +163,24 @@ def test_a_passage_of_exactly_the_robots_width_is_left_undecided(shift):
     pair = [[1.0, -0.65 - shift, 0.0, 0.0, 0.5], [1.0, 0.65, 0.0, 0.0, 0.5]]
     corridor = {"bounds": [-1.0, 4.0, -0.5, 0.5], "goal": [3.0, 0.0, 0.0]}
     assert reachability(scene(pair, **corridor)).status == "undecided"
+
+
+@pytest.mark.parametrize("other", [{"model": "car", "turning_radius": 3.0}, {"model": "dynamic_unicycle"}])
+def test_a_route_is_no_proof_for_a_robot_that_does_not_turn_in_place(other):
+    circle = [[1.0, 1.0, 0.0, 0.0, 0.2]]
+    assert reachability(scene(circle)).status == "reachable"
+    assert reachability(scene(circle, **other)).status == "undecided"
+
+
+def test_an_origin_that_is_no_part_of_the_body_may_be_in_an_obstacle():
+    arm = scene(
+        [[2.0, 0.0, 0.0, 0.0, 0.3]],
+        goal=[4.0, 0.0, 0.0],
+        bounds=[-1.0, 5.0, 0.0, 0.2],
+        footprint=[[0.0, 0.5, 0.1]],
+    )
+    assert certify(arm, np.tile([0.5, 0.0], (160, 1)), 0.05).clearance == pytest.approx(0.1)
+    assert reachability(arm).status == "undecided"
+    assert lower_bound(replace(arm, bounds=BOUNDS)) == pytest.approx((4.0 - 0.05) / 0.5, abs=1e-5)
+    held = replace(arm, footprint=[[0.0, 0.5, 0.1], [0.0, 0.0, 0.1]])
+    assert reachability(held).status == "unreachable"

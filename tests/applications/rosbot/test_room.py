@@ -72,3 +72,16 @@ def test_a_room_of_nothing_or_of_too_much_is_refused():
         Room(np.zeros((4, 4), dtype=bool))
     with pytest.raises(ScenarioError, match="reach over 9000 m x 8000 m; expected at most"):
         Room(segments=np.array([[0.0, 0.0, 9000.0, 8000.0]]))
+
+
+def test_scenes_of_one_room_share_a_field():
+    room = Room(segments=np.array([[0.0, 0.0, 1.0, 0.0]]))
+    field = room.field(0.05, np.array([[2.1, 1.0]]))
+    assert room.field(0.05, np.array([[2.9, 0.2]])) is field
+    assert room.field(0.05, np.array([[3.1, 0.2]])) is not field
+
+
+def test_whole_numbers_are_numbers():
+    whole = Room(segments=np.array([[0, 0, 2, 0]]), polygons=(np.array([[0, 1], [1, 1], [1, 2]]),))
+    same = Room(segments=1.0 * whole.segments, polygons=(1.0 * whole.polygons[0],))
+    assert np.array_equal(whole.field(0.05).squares, same.field(0.05).squares)

@@ -62,7 +62,7 @@ def test_a_plan_in_a_room_keeps_what_its_certificate_says():
 
 def test_a_rectangle_passes_with_all_of_its_corners():
     body = rectangle_circles(0.5, 0.24, (0.05, 0.0))
-    scenario, report = planned(body=body)
+    scenario, report = planned(footprint=body)
     corners = np.array([[0.3, 0.12, 0.0], [0.3, -0.12, 0.0], [-0.2, 0.12, 0.0], [-0.2, -0.12, 0.0]])
     places = placed(corners, poses(scenario, report)[::10])
     assert room().gaps(places.reshape(-1, 2)).min() >= report.certificate.clearance > 0.0
@@ -71,7 +71,7 @@ def test_a_rectangle_passes_with_all_of_its_corners():
 def test_a_body_passes_moving_circles():
     body = np.array([[0.15, 0.0, 0.12], [-0.15, 0.0, 0.12]])
     crossing = [[1.5, -1.0, 0.0, 0.3, 0.25]]
-    scenario, report = planned(body=body, circles=crossing, room=None)
+    scenario, report = planned(footprint=body, circles=crossing, room=None)
     track = poses(scenario, report)
     centers, times = placed(body, track), 1e-3 * np.arange(len(track))
     apart = np.hypot(centers[..., 0] - 1.5, centers[..., 1] + 1.0 - 0.3 * times[:, None]) - 0.37
@@ -120,6 +120,16 @@ def test_a_run_folder_keeps_the_map(tmp_path):
     assert np.array_equal(again.room.cells, read_scenario(tmp_path / "in" / "near.json").room.cells)
     assert read_plan(tmp_path / "out" / "plan.json").is_found
     assert (tmp_path / "out" / "plan.png").exists()
+
+
+def test_a_drive_keeps_the_map_too(tmp_path):
+    short = tmp_path / "short.json"
+    short.write_text(json.dumps(json.loads(OFFICE.read_text()) | {"time_limit": 0.1}))
+    for name in ("office.yaml", "office.png"):
+        (tmp_path / name).write_bytes(OFFICE.with_name(name).read_bytes())
+    assert main(["drive", str(short), "--out", str(tmp_path / "out")]) == 4
+    again = read_scenario(tmp_path / "out" / "scenario.json")
+    assert np.array_equal(again.room.cells, read_scenario(short).room.cells)
 
 
 @pytest.mark.parametrize(

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,3 +57,19 @@ def test_a_start_that_touches_an_obstacle_is_free():
 def test_what_is_wrong_is_named_with_its_value(wrong, sentence):
     with pytest.raises(ScenarioError, match=sentence):
         Scenario(**{"start": START, "goal": GOAL, "bounds": BOUNDS} | wrong)
+
+
+def test_a_changed_robot_is_the_changed_one():
+    disc = Scenario([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], radius=0.0)
+    assert replace(disc, start=[0.1, 0.0, 0.0]).body.tolist() == [[0.0, 0.0, 0.0]]
+    assert replace(disc, radius=0.2).body.tolist() == [[0.0, 0.0, 0.2]]
+    assert replace(disc, footprint=[[0.1, 0.0, 0.3]]).radius == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize(("name", "what"), [("speed_limits", "v"), ("turn_limits", "omega")])
+def test_a_robot_that_hardly_moves_is_refused(name, what):
+    with pytest.raises(
+        ScenarioError, match=f"limits of {what} are .*; expected one of at least 1e-06 in size"
+    ):
+        Scenario(START, GOAL, **{name: (-1e-310, 1e-310)})
+    Scenario(START, GOAL, **{name: (-1e-6, 1e-310)})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import PERIOD, Effort, problem_of
+from applications.rosbot.planner import PERIOD, Effort, plan_scenario, problem_of
 from applications.rosbot.polar_law import SATURATING, polar_law
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
@@ -83,6 +83,7 @@ def test_a_car_passes_places_and_a_robot_with_lags_is_refused():
     ("via", "sentence"),
     [
         ([[1.0, 1.0, 0.0]], "via-point 0 has tolerance 0 m; expected more than 0"),
+        ([[2e4, 1.0, 0.1]], r"via-point 0 is \[20000.0, 1.0, 0.1\]; expected numbers within ±10000"),
         ([[1.0, 1.0, 0.1], [9.0, 0.0, 0.1]], r"via-point 1 \(9, 0\) lies outside the bounds"),
         ([[1.0, np.nan, 0.1]], "via-points are rows of x, y and tolerance in m, all finite"),
         ([1.0, 1.0, 0.1], "via-points are rows of x, y and tolerance"),
@@ -91,3 +92,24 @@ def test_a_car_passes_places_and_a_robot_with_lags_is_refused():
 def test_places_that_make_no_sense_are_one_sentence(via, sentence):
     with pytest.raises(ScenarioError, match=sentence):
         plan_through(scene(bounds=[-5.0, 5.0, -5.0, 5.0]), via, law(), effort=QUICK)
+
+
+def test_what_is_allowed_is_for_all_legs():
+    few = Effort(rollouts=3 * 288)
+    report = plan_through(scene(), VIA, law(), seed=1, effort=few)
+    alone = plan_scenario(scene(), [law()], seed=1, effort=few)
+    assert report.ended == "rollouts"
+    assert few.rollouts <= report.evaluations <= alone.evaluations  # a round is not broken off
+
+
+def test_too_little_time_after_a_leg_proves_nothing():
+    late = plan_through(scene(circles=[], time_limit=9.0), [[2.0, 1.5, 0.05]], law(), effort=QUICK)
+    assert (late.status, late.plan) == ("not_found", None)
+    assert late.reason.startswith("on the way to the goal: too late")
+    shut = scene(circles=[[3.0, 0.0, 0.0, 0.0, 0.3]])
+    assert plan_through(shut, [[1.0, 0.0, 0.1]], law(), effort=QUICK).status == "unreachable"
+
+
+def test_a_circle_may_fly_off_on_the_way():
+    far = scene(circles=[[9e3, 0.0, 1e3, 0.0, 0.2]])
+    assert plan_through(far, [[1.0, 0.0, 0.1]], law(), effort=QUICK).status == "planned"

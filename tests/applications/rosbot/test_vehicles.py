@@ -145,3 +145,11 @@ def test_at_rest_the_lags_end_where_the_commands_lead():
 def test_a_plant_that_makes_no_sense_is_refused(changes, sentence):
     with pytest.raises(ScenarioError, match=sentence):
         scene(**changes)
+
+
+def test_a_plan_of_a_robot_with_other_states_is_no_way_to_begin():
+    before = plan_scenario(scene(), [default_law()], effort=QUICK)
+    lagging = scene(model="dynamic_unicycle")
+    after = plan_scenario(lagging, [default_law()], effort=QUICK, previous=before, elapsed=0.5)
+    anew = plan_scenario(lagging, [default_law()], effort=QUICK)
+    assert np.array_equal(after.controls, anew.controls)
