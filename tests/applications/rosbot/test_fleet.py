@@ -141,7 +141,7 @@ def test_a_robot_that_cannot_arrive_alone_is_named():
             "goals of robots 0 and 1 overlap by 0.2 m",
         ),
         ((EXCHANGE[0], replace(EXCHANGE[1], model="dynamic_unicycle")), "robot 1 is a dynamic_unicycle"),
-        ((replace(EXCHANGE[0], body=[[0.1, 0.0, 0.2]]), EXCHANGE[1]), "robot 0 is not round"),
+        ((replace(EXCHANGE[0], footprint=[[0.1, 0.0, 0.2]]), EXCHANGE[1]), "robot 0 is not round"),
     ],
 )
 def test_what_is_no_fleet_is_refused(scenarios, sentence):
