@@ -142,7 +142,7 @@ def main() -> None:
     laws = laws or [polar_law(unicycle(), gains) for gains in (SATURATING, HOT)]
     known = json.loads((SHARED / "reference" / "planning.json").read_text()) if SHARED.exists() else {}
     public = (SHARED / "scenarios").glob("p*.json")
-    paths = sorted((*public, *(ROOT / "applications" / "rosbot" / "scenarios").glob("*.json")))
+    paths = sorted((*public, *(ROOT / "applications" / "rosbot" / "scenarios").glob("paper*.json")))
     paths = [path for path in paths if not chosen.scenarios or path.stem in chosen.scenarios]
     plan_scenario(read_scenario(paths[0]), laws)  # loads what is loaded once
     print(HEAD)
