@@ -59,20 +59,16 @@ class Draws:
     def __len__(self) -> int:
         return len(self.delay)
 
-    def of(self, rows: npt.ArrayLike) -> "Draws":
-        """The draws with these numbers."""
-        rows = np.asarray(rows, dtype=np.int64)
-        return Draws(
-            self.parameters[rows], delay=self.delay[rows], noise=self.noise, tables=self.tables[rows]
-        )
-
 
 def crossed(starts: npt.ArrayLike, draws: Draws) -> tuple[Floats, Draws]:
     """Every start (S, n) under every one of D draws: starts (D S, n) and their draws, all starts of a draw together."""
     check_kind("draws", draws, Draws)
     places = shaped("starts", np.atleast_2d(numbers("starts", starts)), (-1, -1))
     rows = np.repeat(np.arange(len(draws)), len(places))
-    return np.tile(places, (len(draws), 1)), draws.of(rows)
+    repeated = Draws(
+        draws.parameters[rows], delay=draws.delay[rows], noise=draws.noise, tables=draws.tables[rows]
+    )
+    return np.tile(places, (len(draws), 1)), repeated
 
 
 def random_draws(
