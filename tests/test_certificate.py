@@ -12,9 +12,10 @@ from applications.rosbot.scenario import Scenario
 from gpsynth.distance_field import field_of_cells
 from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError
+from gpsynth.obstacles import Obstacles
 from gpsynth.planning import certified_clearance
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 from gpsynth.simulation import Trajectory
 
 PERIOD, PERIODS, FINE = 0.05, 60, 500

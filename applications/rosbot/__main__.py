@@ -8,18 +8,9 @@ from types import MappingProxyType
 
 import click
 
-from gpsynth.cli import (
-    ENCODINGS,
-    LOADING,
-    EncodingName,
-    begin,
-    export,
-    load_law,
-    run,
-    seed_option,
-    status,
-    threads_option,
-)
+from gpsynth.cli import ENCODINGS, EncodingName, export
+from gpsynth.command_line import LOADING, load_law, run, seed_option, status, threads_option
+from gpsynth.run_files import begin
 
 PATH = click.Path(path_type=Path)
 SEED = 3  # of the law that comes along

@@ -8,7 +8,7 @@ import numpy as np
 from applications.rosbot.courses import Course
 from applications.rosbot.loop import CYCLE, Drive
 from applications.rosbot.plan_file import once_a_period
-from applications.rosbot.planner import PERIOD
+from applications.rosbot.problems import PERIOD
 from gpsynth.files import write_json
 from gpsynth.law import Law
 

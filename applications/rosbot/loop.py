@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from applications.rosbot.courses import Course, standing
-from applications.rosbot.planner import PERIOD
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.replanning import Replanning, replan
 from applications.rosbot.replay import Replay, drive, replay, within
 from applications.rosbot.scenario import Scenario

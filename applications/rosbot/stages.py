@@ -25,11 +25,13 @@ from applications.rosbot.sensing import Sensor
 from applications.rosbot.show import redraw, scenario_beside
 from applications.rosbot.stabilizer import SEARCH_BUDGET, stabilization, synthesize_stabilizer
 from applications.rosbot.through import plan_through
-from gpsynth.cli import EncodingName, load_law, recorder, status, write_result
+from gpsynth.cli import EncodingName
+from gpsynth.command_line import load_law, status
 from gpsynth.errors import FileError, GpsynthError, LawError
 from gpsynth.files import write_bytes
 from gpsynth.law import Law
 from gpsynth.record import Run
+from gpsynth.run_files import recorder, write_result
 from gpsynth.synthesis import SynthesisResult
 
 CONTROLS = ("v", "omega")

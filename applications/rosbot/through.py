@@ -7,7 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from applications.rosbot.certificate import certify
-from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
+from applications.rosbot.planner import PlanReport, plan_scenario
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.reachability import reachability
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import MOST, Scenario

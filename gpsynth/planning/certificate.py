@@ -16,7 +16,8 @@ from gpsynth.checks import check_number
 from gpsynth.distance_field import DistanceField
 from gpsynth.errors import ProblemError
 from gpsynth.intervals import enclose
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.obstacles import Obstacles
+from gpsynth.problem import Problem
 from gpsynth.simulation import Trajectory
 
 Box = tuple[Floats, Floats]  # lowest and highest values, (N, n) each

@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 import applications.rosbot
-from applications.rosbot.planner import PlanReport, plan_scenario, problem_of
+from applications.rosbot.planner import PlanReport, plan_scenario
+from applications.rosbot.problems import problem_of
 from applications.rosbot.reachability import reachability
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario

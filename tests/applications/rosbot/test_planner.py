@@ -12,8 +12,9 @@ from applications.rosbot.following import nearest_time
 from applications.rosbot.guides import direct_guides, guides_along
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.plan_file import plan_document, write_plan
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario, problem_of
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import HOT, SATURATING, polar_law
+from applications.rosbot.problems import PERIOD, problem_of
 from applications.rosbot.replay import replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario

@@ -12,8 +12,9 @@ from applications.rosbot.footprint import placed, rectangle_circles
 from applications.rosbot.map_file import read_map
 from applications.rosbot.model import unicycle
 from applications.rosbot.office import office
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import SATURATING, polar_law
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.replay import drive
 from applications.rosbot.room import Room
 from applications.rosbot.scenario import Scenario

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario, problem_of
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import SATURATING, polar_law
+from applications.rosbot.problems import PERIOD, problem_of
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.through import plan_through
