@@ -15,7 +15,8 @@ import numpy.typing as npt
 from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, advance, arcs, from_origin
 from applications.rosbot.chords import Chords, chords_of, gaps_of_circles, gaps_of_room
 from applications.rosbot.encounters import least_distance
-from applications.rosbot.lags import ERROR, nominal_path
+from applications.rosbot.lag_errors import errors
+from applications.rosbot.lags import lagging_path, nominal_speeds
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
@@ -82,10 +83,12 @@ def certify(
 
 
 def _lagging(scenario: Scenario, controls: Floats, durations: Floats) -> Arcs:
-    """The path of the nominal robot with lags, in pieces so short that ERROR covers what makes them no arcs."""
-    path = nominal_path(scenario.start, controls, durations)
+    """The path of the nominal robot with lags, in pieces that are nearly arcs."""
+    speeds = nominal_speeds(controls, durations)
+    path = lagging_path(scenario.start, durations, *speeds)
+    error, turn_error = errors(path, durations, *speeds)
     v, omega = (np.maximum(np.abs(each[:-1]), np.abs(each[1:])) for each in (path.v, path.omega))
-    return Arcs(path.times, path.poses, v, omega, np.diff(path.times), ERROR, ERROR)
+    return Arcs(path.times, path.poses, v, omega, np.diff(path.times), error, turn_error)
 
 
 def _in_room(chords: Chords, scenario: Scenario) -> _Nearest:
