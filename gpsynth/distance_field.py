@@ -18,6 +18,7 @@ from gpsynth.checks import check_number
 from gpsynth.errors import ProblemError
 
 FAR = 1e6  # m, from nothing
+ROUNDING = 2.0**-53  # u
 Cells = npt.NDArray[np.bool_]
 
 
@@ -65,7 +66,8 @@ class DistanceField:
     def along(self, heads: Floats, tails: Floats) -> Floats:
         """Lower bounds on the least distances (...) along the straight lines between points (..., 2).
 
-        At nodes they are exact; what is missing elsewhere is said in `kernels/field.py`.
+        At nodes they are exact but for rounding, which is deducted; what is missing elsewhere is said in
+        `kernels/field.py`.
         """
         from gpsynth.kernels.field import squares_along
 
@@ -73,7 +75,21 @@ class DistanceField:
         lines.setflags(write=False)
         found = np.empty(len(lines))
         squares_along(self.squares, self.grid, lines, found)
-        return rooted(found).reshape(heads.shape[:-1])
+        return self._rounded_down(found, lines).reshape(heads.shape[:-1])
+
+    def _rounded_down(self, found: Floats, lines: Floats) -> Floats:
+        """The roots (n,) of squares found along lines (n, 4), less what rounding can do to both.
+
+        A computed square is off by a share of itself and of the square of the size of all that it is made of: s, the
+        widths of the grid and the places seen from its corner. The interpolation of four squares of at most 2 (d^2 +
+        s^2) is about 20 sums and products deep, and so are its slopes times the errors 2 u s of a place in a cell; a
+        line doubles that, its square length being 8 s^2 at most. Nodes are off by u times their coordinates, which
+        moves what is occupied by as much.
+        """
+        size = self.spacing * max(self.squares.shape) + np.abs(lines - np.tile(self.corner, 2)).max(axis=1)
+        squares = found - 1024.0 * ROUNDING * (np.abs(found) + size**2)
+        roots: Floats = rooted(squares) - 16.0 * ROUNDING * np.abs(self.corner).max()
+        return roots
 
     def joined(self, squares: Floats) -> "DistanceField":
         """The field of what is occupied here and what another field on the same nodes has the squares of."""
