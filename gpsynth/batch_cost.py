@@ -11,35 +11,37 @@ import numpy as np
 
 from gpsynth.arrays import Floats
 from gpsynth.evaluate import Evaluator
-from gpsynth.objective import PROBLEMS_OWN, Objective, score
+from gpsynth.law_cost import LawCost, PlanCases
+from gpsynth.objective import PROBLEMS_OWN, Objective
 from gpsynth.problem import Problem
 from gpsynth.structure_search import Candidate
 
 
 @dataclass(frozen=True, eq=False)
 class BatchCost:
-    """What candidates cost from each start; those with one program go to the kernel together."""
+    """What candidates cost in every case; those with one program go to the kernel together."""
 
     problem: Problem
     threads: int = 1
     objective: Objective = PROBLEMS_OWN
+    plans: PlanCases | None = None
 
     def __call__(self, batch: Sequence[Candidate[Any]]) -> Floats:
-        """Costs (N, S) of N candidates."""
+        """Costs (N, S) of N candidates, with plans (N, S + T)."""
         groups = [list(group) for _, group in groupby(batch, key=lambda candidate: id(candidate.program))]
 
         def of_group(group: list[Candidate[Any]]) -> Floats:
             values = np.array([candidate.values for candidate in group]).reshape(len(group), -1)
             bound = max(candidate.bound for candidate in group)
-            return score(self.evaluator, group[0].program, values, self.objective, bound)
+            return self.cost.cases(group[0].program, values, bound)
 
         with ThreadPoolExecutor(self.threads) as pool:
             return np.concatenate(list(pool.map(of_group, groups)))
 
-    def __reduce__(self) -> tuple[type["BatchCost"], tuple[Problem, int, Objective]]:
-        return BatchCost, (self.problem, self.threads, self.objective)
+    def __reduce__(self) -> tuple[type["BatchCost"], tuple[Any, ...]]:
+        return BatchCost, (self.problem, self.threads, self.objective, self.plans)
 
     @cached_property
-    def evaluator(self) -> Evaluator:
-        """One of each process: what it caches would not survive the way to another."""
-        return Evaluator(self.problem)
+    def cost(self) -> LawCost:
+        """One of each process: what its evaluator caches would not survive the way to another."""
+        return LawCost(Evaluator(self.problem), self.objective, self.plans)

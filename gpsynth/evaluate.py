@@ -20,6 +20,7 @@ from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.program import Program
 from gpsynth.rollouts import Paths, Rollouts, rollouts_of
+from gpsynth.schedule import Schedules
 
 MOST_PERIODS = 10_000_000  # of one rollout
 ROUNDING = 1e-9  # of a sum of costs: what is above a bound by no more is not above it
@@ -67,23 +68,14 @@ class Evaluator:
         ends early where costs cannot be negative, and costs infinity. With `paths` everything the rollouts pass through
         is kept.
         """
-        problem = self.problem
-        check_kind("program", program, Program)
+        problem, vectors = self.problem, self._vectors(program, parameters)
         check_number("the bound", bound)
-        if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
-            raise ProblemError(
-                f"the program computes {_listed(program.names)} from {_listed(program.inputs)}; expected "
-                f"{_listed(problem.plant.control_names)} from the features {_listed(problem.features.names)}"
-            )
-        vectors = np.atleast_2d(numbers("parameters", parameters))
-        if vectors.ndim != 2 or vectors.shape[1] != len(program.parameters):
-            raise ProblemError(
-                f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
-            )
         bounded = len(vectors) == 1 and problem.costs_nonnegative
         total = float(bound) * len(problem.starts) * (1.0 + ROUNDING) if bounded else np.inf
-        clock = self.until(problem.horizon, bound=total)
-        return self._roll(program, vectors, _NO_PLAN, clock, len(vectors), paths=paths)
+        picks = _picks(len(vectors), len(problem.starts), 1 if len(vectors) > 1 else 2)
+        return self._roll(
+            program, vectors, _NO_PLAN, self.until(problem.horizon, bound=total), picks, paths=paths
+        )
 
     def of_schedules(
         self,
@@ -104,8 +96,23 @@ class Evaluator:
         check_law(self.problem, law)
         plans = self._plans(points, dwell, reach)._replace(toll=toll or _NO_TOLL)
         horizon = self.problem.horizon if horizon is None else horizon
-        clock = self.until(horizon, reach=reach)
-        return self._roll(law.program, law.parameters[np.newaxis], plans, clock, len(plans.points))
+        clock, picks = (
+            self.until(horizon, reach=reach),
+            _picks(len(plans.points), len(self.problem.starts), 2),
+        )
+        return self._roll(law.program, law.parameters[np.newaxis], plans, clock, picks)
+
+    def of_plans(
+        self, program: Program, parameters: Floats, schedules: Schedules, horizon: float | None = None
+    ) -> Rollouts:
+        """Rollouts (N, K) from the first start: a law under N parameter vectors (N, p), with each of K schedules.
+
+        The horizon is in s; by default it is the problem's.
+        """
+        vectors = self._vectors(program, parameters)
+        plans = self._plans(schedules.points, schedules.dwell, 0.0)
+        clock = self.until(self.problem.horizon if horizon is None else horizon)
+        return self._roll(program, vectors, plans, clock, _pairs(len(vectors), len(schedules)))
 
     def stays(self, rollouts: Rollouts) -> npt.NDArray[np.bool_]:
         """Which of these rollouts (N, S) arrive and end within the tolerance, whether they stop there or not."""
@@ -113,6 +120,22 @@ class Evaluator:
         measure = self.problem.arrival(ends.reshape(-1, ends.shape[-1]))[:, 0]
         within: npt.NDArray[np.bool_] = measure.reshape(rollouts.arrival.shape) <= 0.0
         return within & np.isfinite(rollouts.arrival)
+
+    def _vectors(self, program: Program, parameters: Floats) -> Floats:
+        """The parameter vectors (N, p) of a program that is a law for this problem; raises ProblemError otherwise."""
+        problem = self.problem
+        check_kind("program", program, Program)
+        if program.inputs != problem.features.names or len(program.outputs) != len(problem.plant.controls):
+            raise ProblemError(
+                f"the program computes {_listed(program.names)} from {_listed(program.inputs)}; expected "
+                f"{_listed(problem.plant.control_names)} from the features {_listed(problem.features.names)}"
+            )
+        vectors = np.atleast_2d(numbers("parameters", parameters))
+        if vectors.ndim != 2 or vectors.shape[1] != len(program.parameters):
+            raise ProblemError(
+                f"parameters have shape {np.shape(parameters)}; the law has {len(program.parameters)} parameters"
+            )
+        return vectors
 
     def _plans(self, points: Floats, dwell: Floats, reach: float) -> _Plans:
         places, times = numbers("points", points), numbers("dwell times", dwell)
@@ -136,24 +159,23 @@ class Evaluator:
         vectors: Floats,
         plans: _Plans,
         clock: Clock,
-        candidates: int,
+        picks: Ints,
         *,
         paths: bool = False,
     ) -> Rollouts:
-        """One candidate a parameter vector, or a plan."""
-        starts = len(self.problem.starts)
+        """A rollout for each of the picks."""
         lanes = Lanes(
-            picks=_picks(candidates, starts, 1 if len(vectors) > 1 else 2),
-            starts=self.problem.starts,
+            picks=picks.reshape(-1, 3),
+            starts=readonly(self.problem.starts),
             goals=self.goals,
             parameters=readonly(np.ascontiguousarray(vectors)),
             points=plans.points,
             ends=plans.ends,
         )
-        trace = self._trace(candidates * starts, clock.periods) if paths else _NO_TRACE
+        trace = self._trace(picks.shape[0] * picks.shape[1], clock.periods) if paths else _NO_TRACE
         result = roll(self, program, lanes, clock, trace, plans.toll)
-        rollouts = rollouts_of(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
-        return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
+        rollouts = rollouts_of(result, picks.shape[:2], len(self.problem.arrival.outputs) - 1)
+        return replace(rollouts, paths=self._paths(trace, len(picks))) if paths else rollouts
 
     def _trace(self, lanes: int, periods: int) -> Floats:
         """Room for states, controls and targets at each tick."""
@@ -230,10 +252,17 @@ def roll(
 
 @lru_cache(maxsize=16)
 def _picks(candidates: int, starts: int, varying: int) -> Ints:
-    """(L, 3) start, parameter vector and schedule of each lane; `varying` is the column that tells candidates apart."""
-    lane = np.arange(candidates * starts, dtype=np.int32)
-    picks = np.zeros((len(lane), 3), dtype=np.int32)
-    picks[:, 0], picks[:, varying] = lane % starts, lane // starts
+    """(N, S, 3) start, parameter vector and schedule of each lane; `varying` is the column of the candidate."""
+    picks = np.zeros((candidates, starts, 3), dtype=np.int32)
+    picks[..., 0], picks[..., varying] = np.arange(starts), np.arange(candidates)[:, np.newaxis]
+    return frozen(picks)
+
+
+@lru_cache(maxsize=16)
+def _pairs(vectors: int, schedules: int) -> Ints:
+    """(N, K, 3) the same for each parameter vector with each schedule, from the first start."""
+    picks = np.zeros((vectors, schedules, 3), dtype=np.int32)
+    picks[..., 1], picks[..., 2] = np.arange(vectors)[:, np.newaxis], np.arange(schedules)
     return frozen(picks)
 
 

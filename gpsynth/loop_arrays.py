@@ -69,7 +69,7 @@ def clock_of(problem: Problem) -> Clock:
     return Clock(tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0, np.inf)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def frame_of(problem: Problem) -> Frame:
     """The closed loop but for the law: what does not change from candidate to candidate."""
     given = conditions_of(problem)
@@ -88,7 +88,7 @@ def frame_of(problem: Problem) -> Frame:
     return frame(Loop(*map(instructions, parts)), extent, angles)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def _sorted_circles(obstacles: Obstacles) -> tuple[Floats, int, Buckets]:
     """The circles with those that move first, the number of these, and the buckets of the others."""
     moves = np.any(obstacles.circles[:, 2:4] != 0.0, axis=1)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -10,8 +11,9 @@ from gpsynth.checks import check_whole
 from gpsynth.errors import OptimizerError
 from gpsynth.evaluate import Evaluator, check_law
 from gpsynth.law import Law
+from gpsynth.law_cost import LawCost, PlanCases
 from gpsynth.notation import fresh_names
-from gpsynth.objective import PROBLEMS_OWN, Function, Objective, as_objective, score
+from gpsynth.objective import Function, Objective, as_objective
 from gpsynth.optimizers import CMAES, minimize
 from gpsynth.problem import Problem
 from gpsynth.program import Program
@@ -24,7 +26,7 @@ REACH, SMALLEST, STEP = (
 )  # a number moves by REACH (|number| + SMALLEST); first step, share of that
 
 
-def refit(
+def refit(  # noqa: PLR0913 names each choice as a keyword
     problem: Problem,
     law: Law,
     *,
@@ -32,11 +34,13 @@ def refit(
     budget: int = 2_000,
     constants: bool = False,
     objective: Objective | Function | None = None,
+    plans: PlanCases | None = None,
 ) -> Law:
     """The law with the parameters that CMA-ES finds best on `problem`, never worse than those it has.
 
     With `constants` the numbers written into the formula are tuned too, and become parameters. The cost is the mean
-    over the starts of the problem's own or of `objective`. Raises ProblemError if the law is not for the problem's
+    over the starts of the problem's own or of `objective`, and that of `plans` besides (`gpsynth.planning.PlanCost`).
+    Raises ProblemError if the law is not for the problem's
     plant and features, OptimizerError for a budget below one generation.
     """
     check_law(problem, law)
@@ -48,21 +52,9 @@ def refit(
         return law
     reach = REACH * (np.abs(values) + SMALLEST)
     optimizer = CMAES(values - reach, values + reach, x0=values, sigma=0.5 * STEP)
-    cost = mean_cost(Evaluator(problem), program, as_objective(objective))
+    cost = partial(LawCost(Evaluator(problem), as_objective(objective), plans).means, program)
     found = improved(cost, values, optimizer, seed=seed, budget=budget, path=(REFIT,))
     return law if found is values else replace(law, program=program, parameters=found)
-
-
-def mean_cost(
-    evaluator: Evaluator, program: Program, objective: Objective = PROBLEMS_OWN
-) -> Callable[[Floats], Floats]:
-    """The cost (N,) of parameter vectors (N, p), the mean over the starts."""
-
-    def cost(vectors: Floats) -> Floats:
-        means: Floats = score(evaluator, program, vectors, objective).mean(axis=1)
-        return means
-
-    return cost
 
 
 def improved(

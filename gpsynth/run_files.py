@@ -101,6 +101,7 @@ def _described(entry: "FrontEntry") -> dict[str, Any]:
         "cost": entry.cost,
         "reached": entry.reached,
         "reached_at_least": entry.reached_at_least,
+        "plan_cost": entry.plan_cost,
         "median_time": entry.median_time if entry.reached > 0.0 else None,  # s
         "worst_time": entry.worst_time if entry.reached > 0.0 else None,  # s
         "law": entry.law.to_dict(),

@@ -19,6 +19,7 @@ from gpsynth.evaluate import Evaluator
 from gpsynth.guesses import Guess, genomes_of
 from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
+from gpsynth.law_cost import LawCost, PlanCases
 from gpsynth.objective import Function, Objective, as_objective
 from gpsynth.optimizers import Progress, minimize
 from gpsynth.plotting import plot_front
@@ -45,7 +46,9 @@ class FrontEntry:
     """One law of the front and how it fares on the problem and the trials."""
 
     law: Law
-    cost: float  # mean over the starts, of the trials too, of running and terminal cost
+    cost: (
+        float  # mean over the starts, of the trials too, of running and terminal cost; that of plans is added
+    )
     complexity: int  # instructions of the formula
     reached: float  # share of the starts that are at the goal at the end
     median_time: float  # s, of the arrivals
@@ -53,6 +56,7 @@ class FrontEntry:
     reached_at_least: (
         float | None
     )  # what the probability is at least, at 95 %, by the worst trial; without trials None
+    plan_cost: float | None = None  # mean cost of plans, where they count; weighted it is part of the cost
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,6 +99,7 @@ class SynthesisResult:
                 "cost": entry.cost,
                 "reached": entry.reached,
                 "reached_at_least": entry.reached_at_least,
+                "plan_cost": entry.plan_cost,
                 "median_time": entry.median_time,
                 "worst_time": entry.worst_time,
                 "formulas": "; ".join(entry.law.formulas()),
@@ -105,7 +110,7 @@ class SynthesisResult:
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write `rows` as a CSV file with a header; raises FileError if that is not possible."""
         times = ("median_time", "worst_time")
-        names = ("complexity", "cost", "reached", "reached_at_least", *times, "formulas")
+        names = ("complexity", "cost", "reached", "reached_at_least", "plan_cost", *times, "formulas")
         write_csv(path, names, self.rows())
 
     def latex_table(self) -> str:
@@ -122,12 +127,15 @@ class SynthesisResult:
     def table(self) -> str:
         """The front as text.
 
-        Complexity, cost, share of starts reached and what its probability is at least, times (s), formulas.
+        Complexity, cost, share of starts reached and what its probability is at least, cost of plans, times (s),
+        formulas.
         """
-        lines = [f"{'size':>4} {'cost':>10} {'reached':>8} {'p >=':>6} {'median s':>9} {'worst s':>8}  law"]
+        head = f"{'size':>4} {'cost':>10} {'reached':>8} {'p >=':>6} {'plans':>7} {'median s':>9} {'worst s':>8}  law"
+        lines = [head]
         for entry in self.front:
             least = "" if entry.reached_at_least is None else f"{entry.reached_at_least:.3f}"
-            head = f"{entry.complexity:4d} {entry.cost:10.4g} {entry.reached:8.1%} {least:>6} "
+            plans = "" if entry.plan_cost is None else f"{entry.plan_cost:.3f}"
+            head = f"{entry.complexity:4d} {entry.cost:10.4g} {entry.reached:8.1%} {least:>6} {plans:>7} "
             head += f"{entry.median_time:9.2f} {entry.worst_time:8.2f}  "
             lines.append(head + ("\n" + " " * len(head)).join(entry.law.formulas()))
         return "\n".join(lines)
@@ -143,6 +151,7 @@ def synthesize(
     search: StructureSearch[G] | Epochs[G] | VariationalGA | None = None,
     guesses: Sequence[Guess] = (),
     objective: Objective | Function | None = None,
+    plans: PlanCases | None = None,
     rough: Problem | None = None,
     tuned: Problem | None = None,
     trials: Sequence[Problem] = (),
@@ -162,10 +171,11 @@ def synthesize(
     loses.
 
     The search begins with `guesses`: formulas as text, functions of the features, Programs or Laws. An `objective`, a
-    function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With a `folder`
-    the search leaves checkpoints there, and with `resume` it goes on from the last one; Ctrl-C ends it early, with what
-    was found so far. The same seed gives the same result for any number of threads and after any resume. `search` is
-    of this encoding; `islands` merge, so they take a StructureSearch only.
+    function of the rollouts of many laws, takes the place of the problem's running and terminal costs. With `plans`
+    (`gpsynth.planning.PlanCost`) a law also pays what plans cost that are made with it, in the search, in tuning and in
+    the front. With a `folder` the search leaves checkpoints there, and with `resume` it goes on from the last one;
+    Ctrl-C ends it early, with what was found so far. The same seed gives the same result for any number of threads and
+    after any resume. `search` is of this encoding; `islands` merge, so they take a StructureSearch only.
 
     Raises ProblemError if the encoding's inputs and outputs are not features and controls of all problems,
     OptimizerError if `search` is of another encoding, EncodingError or FormulaError if a guess is no formula of the
@@ -174,7 +184,7 @@ def synthesize(
     check_encoding(problem, encoding)
     check_search(seed, budget, threads, callback)
     check_whole("tuning", tuning, 0)
-    _check_parts(encoding, search, rough, tuned, trials)
+    _check_parts(encoding, search, rough, tuned, trials, plans)
     _check_islands(islands, search)
     shape = None if islands is None else (islands, budget)  # shares depend on the budget
     wanted = as_objective(objective)
@@ -185,9 +195,10 @@ def synthesize(
         "rough problem": rough,
         "search": strategy,
         "objective": wanted,
+        "cost of plans": plans,
         "number of islands or their budget": shape,
     }
-    cost = BatchCost(rough or problem, threads if islands is None else 1, wanted)
+    cost = BatchCost(rough or problem, threads if islands is None else 1, wanted, plans)
     found, reason = run_search(
         cost,
         strategy,
@@ -202,11 +213,11 @@ def synthesize(
     )
     tuning = 0 if reason == INTERRUPTED else tuning
     evaluators = [Evaluator(each) for each in (problem, *trials)]
-    tuner = Tuner(Evaluator(tuned or problem), wanted, encoding.space, seed, tuning)
+    tuner = Tuner(LawCost(Evaluator(tuned or problem), wanted, plans), encoding.space, seed, tuning)
 
     def entry(numbered: tuple[int, Individual[G]]) -> FrontEntry:
         number, individual = numbered
-        return _entry(evaluators, individual.program, tuner(individual, number), wanted)
+        return _entry(evaluators, individual.program, tuner(individual, number), wanted, plans)
 
     with ThreadPoolExecutor(threads) as pool:
         entries = list(pool.map(entry, enumerate(found.state.front)))
@@ -242,7 +253,12 @@ def check_search(seed: int, budget: int, threads: int, callback: object) -> None
 
 
 def _check_parts(
-    encoding: Encoding[Any], search: object, rough: object, tuned: object, trials: object
+    encoding: Encoding[Any],
+    search: object,
+    rough: object,
+    tuned: object,
+    trials: object,
+    plans: PlanCases | None,
 ) -> None:
     check_kind("search", search, StructureSearch, Epochs, VariationalGA, optional=True)
     inner = search.search if isinstance(search, Epochs) else search
@@ -252,6 +268,8 @@ def _check_parts(
     check_kind("tuned", tuned, Problem, optional=True)
     check_kind("trials", trials, list, tuple)
     others = {f"problem of trial {number}": trial for number, trial in enumerate(cast(Sequence[Any], trials))}
+    if plans is not None:
+        others |= {f"problem of plan {number}": each for number, each in enumerate(plans.problems)}
     for name, other in {"rough problem": rough, "tuned problem": tuned, **others}.items():
         if other is not None or name in others:
             check_encoding(cast(Problem, other), encoding, name)
@@ -266,7 +284,11 @@ def _check_islands(islands: object, search: object) -> None:
 
 
 def _entry(
-    evaluators: Sequence[Evaluator], program: Program, values: Floats, objective: Objective
+    evaluators: Sequence[Evaluator],
+    program: Program,
+    values: Floats,
+    objective: Objective,
+    plans: PlanCases | None,
 ) -> FrontEntry:
     problem = evaluators[0].problem
     rollouts = [
@@ -275,14 +297,17 @@ def _entry(
     arrival = np.concatenate([each.arrival[0] for each in rollouts])
     there = [evaluator.stays(each)[0] for evaluator, each in zip(evaluators, rollouts, strict=True)]
     reached = np.concatenate(there)
+    cost = float(np.concatenate([objective(each)[0] for each in rollouts]).mean())
+    of_plans = None if plans is None else float(plans(program, values[np.newaxis], np.full(1, np.inf)).mean())
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
-        cost=float(np.concatenate([objective(each)[0] for each in rollouts]).mean()),
+        cost=cost if plans is None or of_plans is None else cost + plans.weight * of_plans,
         complexity=program.complexity,
         reached=float(reached.mean()),
         median_time=float(np.median(arrival[reached])) if reached.any() else float("inf"),
         worst_time=float(arrival[reached].max()) if reached.any() else float("inf"),
         reached_at_least=min((lower_bound(int(each.sum()), len(each)) for each in there[1:]), default=None),
+        plan_cost=of_plans,
     )
 
 

@@ -1,16 +1,16 @@
 """The numbers of a law that a search has found, tuned on the whole problem."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from gpsynth.arrays import Floats
 from gpsynth.encodings.parameters import ParameterSpace
-from gpsynth.evaluate import Evaluator
-from gpsynth.objective import Objective
+from gpsynth.law_cost import LawCost
 from gpsynth.optimizers import CMAES
-from gpsynth.refitting import improved, mean_cost
+from gpsynth.refitting import improved
 from gpsynth.structure_search import Individual
 
 TUNING = 2  # stage of the random streams
@@ -20,8 +20,7 @@ TUNING = 2  # stage of the random streams
 class Tuner:
     """CMA-ES over the numbers of a law, within the space of its encoding."""
 
-    evaluator: Evaluator
-    objective: Objective
+    cost: LawCost
     space: ParameterSpace
     seed: int
     budget: int  # evaluations of each law; 0: numbers stay as they are
@@ -33,5 +32,5 @@ class Tuner:
             return values
         lower, upper = np.full(len(values), self.space.lower), np.full(len(values), self.space.upper)
         optimizer = CMAES(lower, upper, x0=values, sigma=0.02, restarts=0)
-        cost = mean_cost(self.evaluator, individual.program, self.objective)
+        cost = partial(self.cost.means, individual.program)
         return improved(cost, values, optimizer, seed=self.seed, budget=self.budget, path=(TUNING, number))

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -6,8 +8,11 @@ from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
 from gpsynth.objective import costs_of
+from gpsynth.planning import PlanCost, Task
 from gpsynth.problem import Problem
+from gpsynth.program import Program
 from gpsynth.refitting import refit, without_constants
+from gpsynth.schedule import Schedule
 from gpsynth.tracing import trace
 from tests.test_synthesis import PLANT, STARTS, quadratic
 
@@ -85,3 +90,27 @@ def test_a_law_of_another_problem_is_refused():
     )
     with pytest.raises(ProblemError, match="the law sees other features than the problem"):
         refit(other, law_of(PROBLEM, 1.0, 1.0))
+
+
+def test_plans_weigh_in_when_numbers_are_tuned():
+    """Settling alone is content with gentle gains; the plan wants to be there soon."""
+    eager = Task(
+        replace(PROBLEM, starts=[[2.0, 0.0]], tolerance=[0.1, 10.0], running=_second(), stop=True),
+        1.0,
+        [Schedule([[0.0, 0.0]], [1.0])],
+    )
+    gentle = refit(PROBLEM, law_of(PROBLEM, 0.5, 0.5), seed=1, budget=600)
+    both = refit(
+        PROBLEM, law_of(PROBLEM, 0.5, 0.5), seed=1, budget=600, plans=PlanCost((eager,), weight=100.0)
+    )
+    assert _arrival(both, eager.problem) < 0.7 * _arrival(gentle, eager.problem)
+    assert cost(gentle) < cost(both)
+
+
+def _second() -> Program:
+    """A running cost of 1."""
+    return Problem(PLANT, STARTS, goal=(0.0, 0.0), tolerance=0.1).running
+
+
+def _arrival(law: Law, problem: Problem) -> float:
+    return Evaluator(problem).of_program(law.program, law.parameters[np.newaxis]).arrival[0, 0]

@@ -8,7 +8,7 @@ import gpsynth as gs
 from gpsynth.batch_cost import BatchCost
 from gpsynth.builder import Builder
 from gpsynth.evaluate import Evaluator
-from gpsynth.objective import PROBLEMS_OWN
+from gpsynth.law_cost import LawCost
 from gpsynth.structure_search import Candidate, Individual
 from gpsynth.tuning import Tuner
 
@@ -43,11 +43,11 @@ def _individual(value):
 
 
 def test_the_gain_is_the_one_that_a_scalar_search_finds() -> None:
-    tuned = Tuner(Evaluator(PROBLEM), PROBLEMS_OWN, SPACE, seed=1, budget=300)(_individual(3.0), 0)
+    tuned = Tuner(LawCost(Evaluator(PROBLEM)), SPACE, seed=1, budget=300)(_individual(3.0), 0)
     least = minimize_scalar(lambda gain: _individual(gain).cost, bounds=(0.0, 4.0), method="bounded")
     assert tuned[0] == pytest.approx(least.x, abs=1e-4)
 
 
 def test_without_a_budget_the_numbers_stay() -> None:
     law = _individual(3.0)
-    assert Tuner(Evaluator(PROBLEM), PROBLEMS_OWN, SPACE, seed=1, budget=0)(law, 0) is law.values
+    assert Tuner(LawCost(Evaluator(PROBLEM)), SPACE, seed=1, budget=0)(law, 0) is law.values

@@ -1,4 +1,4 @@
-"""What a law is worth to plans: shares of least times that are known in closed form, and numbers tuned for them."""
+"""What a law is worth to plans: shares of least times that are known in closed form."""
 
 from dataclasses import replace
 
@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from gpsynth.builder import Builder
-from gpsynth.errors import OptimizerError, ProblemError
+from gpsynth.errors import ProblemError
 from gpsynth.law import Law
 from gpsynth.obstacles import Obstacles
-from gpsynth.planning import PlanSettings
-from gpsynth.planning.worth import Task, Worth, refit_to_plans
+from gpsynth.planning import PlanSettings, Task, Worth
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 
@@ -70,35 +69,8 @@ def test_the_limits_are_those_of_the_task():
     assert 0.97 * 0.5 < Worth((Task(slow, LEAST),), SMALL)(law_of(8.0)) <= 0.5 + 1e-9
 
 
-def test_refitting_makes_a_slow_law_fast():
-    found = refit_to_plans(law_of(1.0, 0.3), WORTH, missed=lambda law: 0.0, seed=1, budget=80)
-    assert found.program == law_of(1.0).program
-    assert WORTH(found) > 0.9
-
-
-def test_refitting_asks_nothing_of_laws_that_miss():
-    asked = []
-
-    def worth(law: Law) -> float:
-        asked.append(law.parameters[1])
-        return WORTH(law)
-
-    found = refit_to_plans(
-        law_of(1.0, 0.3), worth, missed=lambda law: 0.5 * float(law.parameters[1] > 0.5), seed=1, budget=60
-    )
-    assert max(asked) <= 0.5
-    assert 0.3 < found.parameters[1] <= 0.5
-
-
-def test_refitting_keeps_a_law_that_cannot_be_improved():
-    law = law_of(1.0)
-    assert refit_to_plans(law, lambda law: 1.0, missed=lambda law: 0.0, budget=20) is law
-
-
 def test_what_is_wrong_is_said():
     with pytest.raises(ProblemError, match="at least one task"):
         Worth(())
     with pytest.raises(ProblemError, match="finite and greater than 0, not inf"):
         Task(problem(), np.inf)
-    with pytest.raises(OptimizerError, match="miss nothing"):
-        refit_to_plans(law_of(1.0), WORTH, missed=lambda law: 0.1)

@@ -23,7 +23,8 @@ from applications.rosbot.planner import Effort, PlanReport, plan_scenario
 from applications.rosbot.scenario_file import read_scenario
 from applications.rosbot.sensing import Sensor
 from applications.rosbot.show import redraw, scenario_beside
-from applications.rosbot.stabilizer import SEARCH_BUDGET, stabilization, synthesize_stabilizer
+from applications.rosbot.stabilization import stabilization
+from applications.rosbot.stabilizer import SEARCH_BUDGET, synthesize_stabilizer
 from applications.rosbot.through import plan_through
 from gpsynth.cli import EncodingName
 from gpsynth.command_line import load_law, status

@@ -1,6 +1,7 @@
 """What the ROSbot's laws are judged on for planning: small scenarios of every kind that plans find hard, generated."""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -14,17 +15,18 @@ from applications.rosbot.reachability import reachability
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import repeated, schedules_along
+from applications.rosbot.stabilization import stabilization
 from gpsynth.arrays import Floats
 from gpsynth.errors import ScenarioError
-from gpsynth.planning import PlanSettings
-from gpsynth.planning.worth import Task, Worth
+from gpsynth.planning import PlanCost, PlanSettings, Task, Worth
 from gpsynth.seeds import stream
 
 SEARCH = PlanSettings(particles=32, iterations=10, rounds=5)
 GUIDED = 3 / 4  # of the particles begin along guides, as in the planner
 LOOSE = 2.0  # T+ at first, in durations of the best guide
 ROOM = (-1.5, 4.5, -2.5, 2.5)  # m, bounds of the robot's center
-_SCENARIOS, _INITIAL = 105, 106  # streams
+FIRST, ROUGH = 16, 0.1  # schedules of a law without a search, and s of their control and steps
+_SCENARIOS, _INITIAL, _TRIED = 105, 106, 107  # streams
 
 _Drawn = tuple[Floats, Floats, Floats]  # start (3,), goal (3,), circles (c, 3) x, y, radius
 
@@ -37,20 +39,35 @@ def training_scenarios(count: int, *, seed: int = 0) -> list[Scenario]:
 
 def plan_worth(scenarios: list[Scenario], *, seed: int = 0, settings: PlanSettings = SEARCH) -> Worth:
     """The worth of laws in scenarios: searches that begin along the guides, against the lower bounds of their times."""
-    return Worth(
-        tuple(_task(each, number, seed, settings) for number, each in enumerate(scenarios)), settings, seed
-    )
+    count = int(GUIDED * settings.particles)
+    tasks = [
+        _task(each, count, settings.points, stream(seed, _INITIAL, n)) for n, each in enumerate(scenarios)
+    ]
+    return Worth(tuple(tasks), settings, seed)
 
 
-def _task(scenario: Scenario, number: int, seed: int, settings: PlanSettings) -> Task:
+def plan_cost(scenarios: list[Scenario], *, seed: int = 0, weight: float = 1.0) -> PlanCost:
+    """What plans of scenarios cost with a law, in s: the best of FIRST schedules along the guides, in rough steps."""
+    tasks = [_task(each, FIRST, SEARCH.points, stream(seed, _TRIED, n)) for n, each in enumerate(scenarios)]
+    return PlanCost(tuple(map(_roughly, tasks)), weight)
+
+
+def _task(scenario: Scenario, count: int, points: int, rng: np.random.Generator) -> Task:
+    """The scenario with `count` schedules along its guides to begin with."""
     guides = _guides(scenario)
-    exact = schedules_along(guides, settings.points)
-    initial = repeated(exact, int(GUIDED * settings.particles), stream(seed, _INITIAL, number))
+    initial = repeated(schedules_along(guides, points), count, rng)
     limits = zip(scenario.speed_limits, scenario.turn_limits, strict=True)
     problem = problem_of(
         scenario, polar_law(unicycle()).with_limits(*limits)
     )  # plant and features are any law's
     return Task(problem, lower_bound(scenario), initial, min(LOOSE * guides[0].duration, problem.horizon))
+
+
+def _roughly(task: Task) -> Task:
+    """In longer steps, and what does not arrive pays for it as in stage 1."""
+    terminal = stabilization(np.zeros((1, 3))).terminal
+    rough = replace(task.problem, period=ROUGH, step=ROUGH, method="heun", terminal=terminal)
+    return replace(task, problem=rough)
 
 
 def _guides(scenario: Scenario) -> list[Guide]:

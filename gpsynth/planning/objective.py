@@ -98,8 +98,7 @@ class Objective:
         """C_obs (N,): points that lie in an obstacle, or how much of the path does."""
         if self.settings.obstacles == "points":
             return self.covered(points)
-        exposure, depth = rollouts.exposure[:, 0], rollouts.depth[:, 0]
-        return np.where(exposure > 0.0, 1.0 + STEEPNESS * (NARROW * exposure + depth), 0.0)
+        return obstacle_term(rollouts.exposure[:, 0], rollouts.depth[:, 0])
 
     def admissible(self, rollouts: Rollouts, points: Floats) -> Flags:
         """Whether (N,) the goal is reached, and the path or the points, as the settings ask, are clear of obstacles."""
@@ -144,3 +143,8 @@ class Objective:
             exposure=gamma * STEEPNESS * NARROW,
             depth=gamma * STEEPNESS,
         )
+
+
+def obstacle_term(exposure: Floats, depth: Floats) -> Floats:
+    """C_obs of paths that are for so long (s), and so deep (m s), within obstacles and their margin."""
+    return np.where(exposure > 0.0, 1.0 + STEEPNESS * (NARROW * exposure + depth), 0.0)

@@ -15,7 +15,8 @@ from types import MappingProxyType
 import joblib
 
 import gpsynth as gs
-from applications.rosbot.stabilizer import OPERATIONS, SYMMETRIES, stabilization, training_poses
+from applications.rosbot.stabilization import stabilization, training_poses
+from applications.rosbot.stabilizer import OPERATIONS, SYMMETRIES
 from examples import planar_quadrotor
 from gpsynth.batch_cost import BatchCost
 from gpsynth.islands import search_islands

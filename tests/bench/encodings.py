@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import gpsynth as gs
-from applications.rosbot.stabilizer import poses, stabilization
+from applications.rosbot.stabilization import poses, stabilization
 from examples import cart_pole, landau_oscillator
 from gpsynth.batch_cost import BatchCost
 from gpsynth.encodings.columns import basic_columns

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from applications.rosbot.stabilizer import default_law, poses, stabilization
+from applications.rosbot.stabilization import poses, stabilization
+from applications.rosbot.stabilizer import default_law
 from gpsynth.builder import Builder
 from gpsynth.evaluate import Evaluator
 from gpsynth.kernels import machine, rollout

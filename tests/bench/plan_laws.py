@@ -20,7 +20,8 @@ from applications.rosbot.model import unicycle
 from applications.rosbot.polar_law import HOT, SATURATING, SETTLING, polar_law
 from applications.rosbot.reeds_shepp import distance
 from applications.rosbot.replay import replay
-from applications.rosbot.stabilizer import default_law, poses, stabilization
+from applications.rosbot.stabilization import poses, stabilization
+from applications.rosbot.stabilizer import default_law
 from applications.rosbot.training import plan_worth, training_scenarios
 from gpsynth.evaluate import Evaluator
 from gpsynth.files import read_json

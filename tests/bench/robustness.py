@@ -15,7 +15,8 @@ import numpy as np
 import gpsynth as gs
 from applications.rosbot.model import DELAY, dynamic_unicycle, unicycle
 from applications.rosbot.polar_law import polar_law
-from applications.rosbot.stabilizer import default_law, poses, stabilization
+from applications.rosbot.stabilization import poses, stabilization
+from applications.rosbot.stabilizer import default_law
 from gpsynth.encodings.network_operator_matrix import Matrix, decode_matrix
 from gpsynth.files import read_json
 from gpsynth.verify.stress import noisy

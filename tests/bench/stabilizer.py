@@ -15,13 +15,8 @@ import numpy as np
 
 from applications.rosbot.model import DELAY, dynamic_unicycle
 from applications.rosbot.reeds_shepp import distance
-from applications.rosbot.stabilizer import (
-    SEARCH_BUDGET,
-    default_law,
-    poses,
-    stabilization,
-    synthesize_stabilizer,
-)
+from applications.rosbot.stabilization import poses, stabilization
+from applications.rosbot.stabilizer import SEARCH_BUDGET, default_law, synthesize_stabilizer
 from gpsynth.draws import Draws, crossed, random_draws
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law

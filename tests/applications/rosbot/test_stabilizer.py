@@ -6,13 +6,8 @@ import numpy as np
 import pytest
 
 from applications.rosbot.model import DELAY, dynamic_unicycle
-from applications.rosbot.stabilizer import (
-    default_law,
-    poses,
-    stabilization,
-    synthesize_stabilizer,
-    training_poses,
-)
+from applications.rosbot.stabilization import poses, stabilization, training_poses
+from applications.rosbot.stabilizer import default_law, synthesize_stabilizer
 from gpsynth.draws import Draws, crossed, random_draws
 from gpsynth.errors import EncodingError
 from gpsynth.evaluate import Evaluator
