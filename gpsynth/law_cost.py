@@ -23,7 +23,7 @@ class PlanCases(Protocol):
     def weight(self) -> float:
         """How much their mean counts beside that of the starts."""
 
-    def __call__(self, program: Program, vectors: Floats, most: Floats) -> Floats:
+    def __call__(self, program: Program, vectors: Floats, most: Floats | None = None) -> Floats:
         """Costs (N, T) of a law under N parameter vectors (N, p); a mean above `most` (N,) may be infinity."""
 
 

@@ -298,7 +298,7 @@ def _entry(
     there = [evaluator.stays(each)[0] for evaluator, each in zip(evaluators, rollouts, strict=True)]
     reached = np.concatenate(there)
     cost = float(np.concatenate([objective(each)[0] for each in rollouts]).mean())
-    of_plans = None if plans is None else float(plans(program, values[np.newaxis], np.full(1, np.inf)).mean())
+    of_plans = None if plans is None else float(plans(program, values[np.newaxis]).mean())
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
         cost=cost if plans is None or of_plans is None else cost + plans.weight * of_plans,

@@ -26,7 +26,7 @@ BOTH = LawCost(Evaluator(SETTLING), plans=PLANS)
 
 def test_the_mean_is_that_of_the_starts_and_the_weighted_one_of_the_plans() -> None:
     starts = score(Evaluator(SETTLING), PROGRAM, VECTORS).mean(axis=1)
-    plans = PLANS(PROGRAM, VECTORS, np.full(2, np.inf)).mean(axis=1)
+    plans = PLANS(PROGRAM, VECTORS).mean(axis=1)
     assert BOTH.cases(PROGRAM, VECTORS).shape == (2, 7)
     assert BOTH.means(PROGRAM, VECTORS) == pytest.approx(starts + 0.7 * plans, rel=1e-14)
 

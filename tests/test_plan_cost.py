@@ -19,7 +19,6 @@ from tests.test_worth import LEAST, law_of, problem
 AT_ONCE = Schedule(np.empty((0, 2)), np.empty(0))
 AWAY = Schedule([[-1.0, 0.0]], [2.0])  # a meter back first, and there until two seconds are over
 THERE = Schedule([[9.0, 0.0]], [3.0])
-NO_LIMIT = np.array([np.inf])
 COLUMN = Obstacles(circles=[[2.0, 0.0, 0.0, 0.0, 0.4]], radius=0.1)  # 1 m of the way is covered
 
 
@@ -29,7 +28,7 @@ def task(*schedules: Schedule, **changes) -> Task:
 
 def costs(law: Law, *tasks: Task, **settings) -> np.ndarray:
     """Of each task."""
-    return PlanCost(tasks, **settings)(law.program, law.parameters[np.newaxis], NO_LIMIT)[0]
+    return PlanCost(tasks, **settings)(law.program, law.parameters[np.newaxis])[0]
 
 
 def test_a_plan_costs_its_arrival_time() -> None:
@@ -66,23 +65,25 @@ def test_obstacles_cost_what_equation_17_says() -> None:
     depth = 2.0 * np.trapezoid([0.0, 0.5], [0.0, 0.5])  # m s at 1 m/s, in to the middle and out
     wanted = 1.0 + STEEPNESS * (NARROW * 1.0 + depth)
     extra = costs(law, covered, gamma=3.0, margin=0.0) - costs(law, free)
-    coarse = STEEPNESS * (NARROW * 0.05 + 0.05 * 0.5)  # a period counts as all covered, with its greatest depth
+    coarse = STEEPNESS * (
+        NARROW * 0.05 + 0.05 * 0.5
+    )  # a period counts as all covered, with its greatest depth
     assert 3.0 * wanted <= extra[0] + 1e-9 <= 3.0 * (wanted + coarse) + 1e-6
 
 
 def test_every_vector_stands_in_its_row() -> None:
     program, vectors = law_of(1.0).program, np.array([[0.5, 1.0], [2.0, 0.4], [9.0, 0.8]])
     both = PlanCost((task(AWAY, THERE), task(THERE, goal=2.0)))
-    together = both(program, vectors, np.full(3, np.inf))
+    together = both(program, vectors)
     assert together.shape == (3, 2)
     for row, vector in zip(together, vectors, strict=True):
-        assert row.tolist() == both(program, vector[np.newaxis], NO_LIMIT)[0].tolist()
+        assert row.tolist() == both(program, vector[np.newaxis])[0].tolist()
 
 
 def test_what_is_above_the_limit_ends_early_and_nothing_else_does() -> None:
     program, vectors = law_of(1.0).program, np.array([[2.0, 1.0], [2.0, 0.5]])
     three = PlanCost(3 * (task(THERE),))
-    exact = three(program, vectors, np.full(2, np.inf))
+    exact = three(program, vectors)
     limits = exact.mean(axis=1) * [1.0, 0.5]
     cut = three(program, vectors, limits)
     assert cut[0].tolist() == exact[0].tolist()
@@ -98,10 +99,10 @@ def test_a_cost_that_may_be_negative_has_no_early_end() -> None:
 
 def test_it_goes_to_another_process_and_back() -> None:
     law, cost = law_of(0.6), PlanCost((task(AWAY, THERE),), weight=2.0, gamma=1.0)
-    before = cost(law.program, law.parameters[np.newaxis], NO_LIMIT)
+    before = cost(law.program, law.parameters[np.newaxis])
     other = pickle.loads(pickle.dumps(cost))
     assert (other.weight, other.gamma) == (2.0, 1.0)
-    assert other(law.program, law.parameters[np.newaxis], NO_LIMIT).tolist() == before.tolist()
+    assert other(law.program, law.parameters[np.newaxis]).tolist() == before.tolist()
 
 
 def test_limits_are_those_of_the_task() -> None:

@@ -11,15 +11,18 @@ from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.encodings.variational import VariationalEncoding
 from gpsynth.epochs import Epochs
-from gpsynth.errors import LawError, OptimizerError, ProblemError
+from gpsynth.errors import FileError, LawError, OptimizerError, ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.islands import Islands
 from gpsynth.objective import costs_of
+from gpsynth.planning import PlanCost, Task
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem
+from gpsynth.schedule import Schedule
 from gpsynth.structure_search import StructureSearch
 from gpsynth.synthesis import SynthesisResult, synthesize
 from gpsynth.variational_ga import VariationalGA
+from tests.test_worth import problem as cart_problem
 
 PLANT = Plant(
     lambda x, u: (x.speed, u.force),
@@ -149,3 +152,35 @@ def test_a_search_of_another_encoding_is_an_error() -> None:
     again = VariationalEncoding(names, ("force",), space=ParameterSpace(2))
     few = StructureSearch(varied, population=10, offspring=10)
     assert synthesize(problem, again, budget=30, tuning=0, search=few).front
+
+
+def _eager() -> PlanCost:
+    """A plan that is wanted soon, whatever force it takes."""
+    second = replace(quadratic(), running=Problem(PLANT, STARTS, goal=(0.0, 0.0), tolerance=0.1).running)
+    soon = replace(second, starts=[[2.0, 0.0]], tolerance=[0.1, 10.0], stop=True)
+    return PlanCost((Task(soon, 1.0, [Schedule([[0.0, 0.0]], [1.0])]),), weight=100.0)
+
+
+def test_plans_weigh_in_when_laws_are_searched(tmp_path) -> None:
+    problem = quadratic()
+    settings = {"seed": 1, "budget": 1_500, "tuning": 200, "threads": 1}
+    calm = synthesize(problem, encoding(problem), **settings)
+    eager = synthesize(problem, encoding(problem), plans=_eager(), folder=tmp_path, **settings)
+    plans = _eager()
+    program, values = eager.law.program, eager.law.parameters[np.newaxis]
+    of_plans = plans(program, values).mean()
+    of_starts = costs_of(Evaluator(problem).of_program(program, values)).mean()
+    assert calm.best.plan_cost is None
+    assert eager.best.plan_cost == of_plans
+    assert eager.best.cost == pytest.approx(of_starts + 100.0 * of_plans)
+    slow = plans(calm.law.program, calm.law.parameters[np.newaxis]).mean()
+    assert of_plans < 0.7 * slow
+    assert eager.rows()[-1]["plan_cost"] == eager.front[-1].plan_cost
+    with pytest.raises(FileError, match="another cost of plans"):
+        synthesize(problem, encoding(problem), folder=tmp_path, resume=True, **settings)
+
+
+def test_plans_of_another_plant_are_an_error() -> None:
+    other = Task(cart_problem(), 3.95, [Schedule([[4.0, 0.0]], [1.0])])
+    with pytest.raises(ProblemError, match="problem of plan 0 has features"):
+        synthesize(quadratic(), encoding(quadratic()), plans=PlanCost((other,)))

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 from types import MappingProxyType
+from typing import Literal
 
 import click
 
@@ -55,11 +56,24 @@ def demo(out: Path, short: bool, resume: bool, seed: int, threads: int) -> int:
 @click.option("--out", type=PATH, default=Path("runs/stabilizer"), show_default=True, help="Run folder.")
 @click.option("--budget", type=click.IntRange(min=1), help="Evaluations. [default: as in the demo]")
 @click.option("--encoding", type=click.Choice(ENCODINGS), default="tree", show_default=True)
+@click.option(
+    "--objective",
+    type=click.Choice(["plans", "settling"]),
+    default="plans",
+    show_default=True,
+    help="What a law is to be fast at: plans and settling at one point, or settling alone.",
+)
 @resume_option
 @seed_option(SEED)
 @threads_option
 def synthesize(
-    out: Path, budget: int | None, encoding: EncodingName, resume: bool, seed: int, threads: int
+    out: Path,
+    budget: int | None,
+    encoding: EncodingName,
+    objective: Literal["plans", "settling"],
+    resume: bool,
+    seed: int,
+    threads: int,
 ) -> None:
     """Stage 1: find a stabilizer from scratch."""
     with status(LOADING):
@@ -69,6 +83,7 @@ def synthesize(
         seed=seed,
         budget=budget,
         encoding=encoding,
+        objective=objective,
         resume=resume,
         threads=threads,
     )

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from gpsynth.encodings.cartesian import CartesianEncoding
 from gpsynth.encodings.parameters import ParameterSpace
 from gpsynth.encodings.tree import TreeEncoding
 from gpsynth.encodings.variational import VariationalEncoding
-from gpsynth.errors import EncodingError
+from gpsynth.errors import EncodingError, ProblemError
 from gpsynth.islands import Islands
 from gpsynth.law import Law
 from gpsynth.optimizers import Progress
@@ -24,6 +24,7 @@ from gpsynth.seeds import stream
 from gpsynth.structure_search import SearchState
 from gpsynth.synthesis import SynthesisResult, synthesize
 
+Wanted = Literal["plans", "settling"]
 OPERATIONS = ("add", "sub", "mul", "min", "max", "abs", "square", "tanh", "sin", "cos", "atan")
 # all continuous, and no division: laws with sgn, atan2 or roots arrive as early, but chatter on the way
 SEARCH_BUDGET = 80_000  # parameter vectors
@@ -52,7 +53,7 @@ def synthesize_stabilizer(
     seed: int,
     budget: int = SEARCH_BUDGET,
     encoding: Literal["tree", "cartesian", "network-operator"] = "tree",
-    objective: Literal["plans", "settling"] = "plans",
+    objective: Wanted = "plans",
     folder: Path | None = None,
     resume: bool = False,
     threads: int = 2,
@@ -66,6 +67,8 @@ def synthesize_stabilizer(
     objective "plans" adds what plans of TASKS generated scenarios cost (`training.plan_cost`). Checkpoints in
     `folder` and `resume` are those of `synthesize`.
     """
+    if objective not in get_args(Wanted):
+        raise ProblemError(f"objective must be plans or settling, not {objective!r}")
     unseen = training_poses(stream(seed, _UNSEEN), 2_048)
     problem = stabilization(unseen, stop=False)
     trials = [stabilization(unseen, period=0.005, stop=False)]

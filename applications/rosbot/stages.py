@@ -24,7 +24,7 @@ from applications.rosbot.scenario_file import read_scenario
 from applications.rosbot.sensing import Sensor
 from applications.rosbot.show import redraw, scenario_beside
 from applications.rosbot.stabilization import stabilization
-from applications.rosbot.stabilizer import SEARCH_BUDGET, synthesize_stabilizer
+from applications.rosbot.stabilizer import SEARCH_BUDGET, Wanted, synthesize_stabilizer
 from applications.rosbot.through import plan_through
 from gpsynth.cli import EncodingName
 from gpsynth.command_line import load_law, status
@@ -55,6 +55,7 @@ def run_synthesis(
     seed: int,
     budget: int | None = None,
     encoding: EncodingName = "tree",
+    objective: Wanted = "plans",
     resume: bool = False,
     threads: int = 1,
 ) -> SynthesisResult:
@@ -67,6 +68,7 @@ def run_synthesis(
         seed=seed,
         budget=budget or SEARCH_BUDGET,
         encoding=encoding,
+        objective=objective,
         folder=run.folder,
         resume=resume,
         threads=threads,

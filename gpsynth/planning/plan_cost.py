@@ -5,6 +5,7 @@ plan for every law of a structure search would take hours; to roll out a dozen s
 a dozen starts. The schedules are the same for all laws, so laws differ by nothing else.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -32,7 +33,7 @@ class PlanCost:
     make no sense.
     """
 
-    tasks: tuple[Task, ...]
+    tasks: Sequence[Task]
     weight: float = 1.0  # of the mean over the tasks, beside that over the starts of a stabilizer
     gamma: float = (
         PlanSettings.gamma
@@ -61,13 +62,12 @@ class PlanCost:
         """Those of the tasks."""
         return tuple(task.problem for task in self.tasks)
 
-    def __call__(self, program: Program, vectors: Floats, most: Floats) -> Floats:
+    def __call__(self, program: Program, vectors: Floats, most: Floats | None = None) -> Floats:
         """Costs (N, T) of a law under N parameter vectors (N, p); a mean above `most` (N,) may be infinity."""
         costs = np.full((len(vectors), len(self.tasks)), np.inf)
-        left, spent = np.arange(len(vectors)), np.zeros(len(vectors))
-        limit = (
-            len(self.tasks) * most * (1.0 + ROUNDING) if self.nonnegative else np.full(len(vectors), np.inf)
-        )
+        left, spent, limit = np.arange(len(vectors)), np.zeros(len(vectors)), np.full(len(vectors), np.inf)
+        if most is not None and self.nonnegative:
+            limit = len(self.tasks) * most * (1.0 + ROUNDING)
         for number in range(len(self.tasks)):
             costs[left, number] = self._least(number, program, vectors[left])
             spent[left] += costs[left, number]

@@ -5,6 +5,7 @@ drive at the limits. Every task is searched with the same random numbers whateve
 Simulation Modeling and Analysis, section 11.2), so that laws differ by less than searches do.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,12 +25,13 @@ STAGE = 4  # of the random streams
 class Worth:
     """The mean over the tasks of least time / arrival time of the plan that is found, 0 without a plan."""
 
-    tasks: tuple[Task, ...]
+    tasks: Sequence[Task]
     settings: PlanSettings = PlanSettings(particles=32, iterations=10, rounds=5)
     seed: int = 0
 
     def __post_init__(self) -> None:
         check_whole("seed", self.seed, 0)
+        object.__setattr__(self, "tasks", tuple(self.tasks))
         if not self.tasks:
             raise ProblemError("the worth of a law needs at least one task")
 
