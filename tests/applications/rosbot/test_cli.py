@@ -520,7 +520,7 @@ def test_a_pipe_is_no_plan_and_is_not_waited_for(capsys, tmp_path):
 
 
 def test_a_folder_without_a_run_is_one_sentence(capsys, tmp_path):
-    _fails(capsys, "show", tmp_path, sentence=["neither a plan.json nor a law.json"])
+    _fails(capsys, "show", tmp_path, sentence=["none of law.json, plan.json, drive.json and fleet.json"])
     _fails(capsys, "show", tmp_path / "nowhere.json", sentence=["does not exist"])
 
 

@@ -17,9 +17,9 @@ from applications.rosbot.polar_law import SATURATING, polar_law
 from applications.rosbot.problems import PERIOD
 from applications.rosbot.replay import drive
 from applications.rosbot.room import Room
+from applications.rosbot.saved import read_plan
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.scenario_file import read_scenario
-from applications.rosbot.show import read_plan
 from gpsynth.planning import PlanSettings
 
 OFFICE = Path(applications.rosbot.__file__).parent / "scenarios" / "office.json"
