@@ -17,6 +17,7 @@ from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Sensor, scene_ahead
 from applications.rosbot.simulated_robot import Flaws, SimulatedRobot
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.schedule import Schedule
@@ -74,6 +75,15 @@ def drive_scenario(
     its end. Raises ScenarioError if more circles move than the sensor can tell apart, or the
     robot is no unicycle.
     """
+    for name, value, kind in (
+        ("scenario", scenario, Scenario),
+        ("law", law, Law),
+        ("flaws", flaws, Flaws),
+        ("sensor", sensor, Sensor),
+    ):
+        check_kind(name, value, kind, error=ScenarioError)
+    check_kind("schedule", schedule, Schedule, error=ScenarioError, optional=True)
+    check_kind("settings", settings, Replanning, error=ScenarioError, optional=True)
     sensor.check(scenario)
     if scenario.model != "unicycle":
         raise ScenarioError(f"the robot is a {scenario.model}; the loop drives a unicycle")

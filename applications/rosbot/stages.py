@@ -95,7 +95,7 @@ def run_plan(
     The plan is written first. Raises FileError if that fails, when it has been printed; a failure after it is a warning
     on stderr.
     """
-    scenario, source = read_scenario(scenario_file), scenario_file.read_bytes()
+    scenario, source, before = read_scenario(scenario_file), scenario_file.read_bytes(), run.elapsed
     with status(f"planning {scenario.name}"):
         if via:
             report = plan_through(scenario, np.array(via), law, seed=seed, effort=effort, threads=threads)
@@ -107,7 +107,7 @@ def run_plan(
         ("its map", lambda: copy_map(scenario_file, run.folder), None),
         ("its scenario", lambda: write_bytes(scenario_beside(path), source), scenario_beside(path)),
         ("its picture", lambda: redraw(path), path.with_suffix(".png")),
-        ("its log", lambda: _log(run, f"plan {scenario.name}", report), None),
+        ("its log", lambda: _log(run, f"plan {scenario.name}", report, before), None),
     ):
         _besides(path, what, work, older)
     return path
@@ -181,8 +181,9 @@ def load_steering_law(path: Path) -> Law:
     return law
 
 
-def _log(run: Run, stage: str, report: PlanReport) -> None:
-    """A line for each improvement: the cost of a plan is its arrival time (s)."""
+def _log(run: Run, stage: str, report: PlanReport, before: float) -> None:
+    """A line for each improvement of a plan begun after `before` (s): its cost is its arrival time (s)."""
     run.rewind(stage)
-    for number, (evaluations, arrival_time) in enumerate(report.history, start=1):
-        run.log(stage, generation=number, evaluations=evaluations, best_cost=arrival_time)
+    for number, (evaluations, arrival_time, seconds) in enumerate(report.history, start=1):
+        times = {"best_cost": arrival_time, "elapsed": before + seconds}
+        run.log(stage, generation=number, evaluations=evaluations, **times)

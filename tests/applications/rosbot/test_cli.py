@@ -143,6 +143,9 @@ def test_a_plan_can_be_replayed(capsys, scenario_file, law_file, tmp_path, obsta
     assert (out / "scenario.json").read_bytes() == path.read_bytes()
     assert (out / "plan.png").read_bytes().startswith(b"\x89PNG")
     assert read_progress(out)[-1]["stage"] == "plan room"
+    elapsed = [entry["elapsed"] for entry in read_progress(out)]
+    assert elapsed == sorted(elapsed)
+    assert elapsed[-1] - elapsed[0] < plan["planning_time"]  # when it was found, not when it was written
 
 
 @pytest.mark.slow
@@ -183,7 +186,7 @@ def test_a_drive_among_movers_can_be_replayed(capsys, scenario_file, law_file, t
     assert len(drive["courses"]) == math.ceil(len(drive["speeds"]) / 2)
     assert f"room: arrived, {drive['arrival_time']:.2f} s" in capsys.readouterr().out
     assert (out / "drive.png").read_bytes().startswith(b"\x89PNG")
-    assert (out / "scenario.json").read_bytes() == path.read_bytes()
+    assert (out / "scenario_drive.json").read_bytes() == path.read_bytes()
 
 
 def test_a_drive_that_does_not_arrive_is_4(scenario_file, law_file, tmp_path):
