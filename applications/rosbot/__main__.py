@@ -152,7 +152,7 @@ def drive(
     without a collision, 4 if not, 2 if the input is wrong.
     """
     with status(LOADING):
-        from applications.rosbot.loop import drive_scenario
+        from applications.rosbot.loop import check_drivable, drive_scenario
         from applications.rosbot.replanning import Replanning
         from applications.rosbot.saved import read_drive
         from applications.rosbot.scenario_file import read_scenario
@@ -164,7 +164,7 @@ def drive(
     scenario = read_scenario(scenario_file)
     law = load_steering_law(law_file) if law_file else default_law()
     sensor, settings = Sensor(reach), Replanning.keeping(margin)
-    sensor.check(scenario)
+    check_drivable(scenario, sensor)
     run_folder = begin(out, seed)
     with status(f"driving {scenario.name}"):
         driven = drive_scenario(

@@ -189,6 +189,12 @@ def test_a_drive_among_movers_can_be_replayed(capsys, scenario_file, law_file, t
     assert (out / "scenario_drive.json").read_bytes() == path.read_bytes()
 
 
+def test_a_robot_that_is_not_driven_leaves_nothing(capsys, scenario_file, law_file, tmp_path):
+    lagging, out = scenario_file(model="dynamic_unicycle"), tmp_path / "out"
+    _fails(capsys, "drive", lagging, "--out", out, "--law", law_file, sentence=["the loop drives a unicycle"])
+    assert not out.exists()
+
+
 def test_a_drive_that_does_not_arrive_is_4(scenario_file, law_file, tmp_path):
     late = scenario_file(time_limit=0.5)
     assert _run("drive", late, "--out", tmp_path / "out", "--law", law_file) == 4
