@@ -110,6 +110,8 @@ MISTAKES = {
     "regress: the same name": (lambda: regress(names=("a", "a")), "need different names; a is there twice"),
     "regress: target's name": (lambda: regress(names=("y", "a")), "need different names; y is there twice"),
     "regress: functions": (lambda: regress(functions="add"), "functions must be names in a tuple, got 'add'"),
+    "regress: all inputs": (lambda: regress(use_all_inputs=1), "use_all_inputs must be a bool, got 1"),
+    "regress: constant": (lambda: gs.regress(X, [1] * 4, use_all_inputs=True), "the target is constant"),
     "regress: complex": (lambda: gs.regress(X * 1j, X[:, 0]), "inputs must hold numbers"),
     "law: order": (lambda: gs.Law(PROBLEM, PROBLEM.features, PROGRAM, []), "plant of a law must be a Plant, got"),
     "law: parameters": (lambda: gs.Law(PLANT, PROBLEM.features, PROGRAM, "a"), "parameters of a law are numbers"),
