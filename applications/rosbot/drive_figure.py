@@ -36,7 +36,7 @@ def draw_drive(scenario: Scenario, trajectory: Floats, ways: Sequence[Floats], s
         places = figure.subplot_mosaic("012;345;ggg", height_ratios=(1.0, 1.0, 0.6))
         instants = np.linspace(0.0, trajectory[-1, 0], INSTANTS)
         for number, instant in enumerate(instants):
-            way = ways[min(int(instant / CYCLE + 1e-9), len(ways) - 1)]
+            way = ways[min(int(instant / CYCLE + 1e-9), len(ways) - 1)] if ways else np.empty((0, 3))
             so_far = trajectory[trajectory[:, 0] <= instant + 1e-9]
             _draw_instant(places[str(number)], scenario, so_far, way, sensor)
         _draw_gaps(places["g"], scenario, trajectory, instants)

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from applications.rosbot.controls import held
 from applications.rosbot.gaps import gaps_to_room, least_gap
-from applications.rosbot.lags import lagging_path, nominal_speeds
+from applications.rosbot.lags import nominal_path
 from applications.rosbot.others import Other
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats, frozen
@@ -62,7 +62,7 @@ def replay(
 def _driven(scenario: Scenario, controls: Floats, durations: Floats) -> Floats:
     if scenario.model != "dynamic_unicycle":
         return drive(scenario.start, controls, durations)
-    path = lagging_path(scenario.start, durations, *nominal_speeds(controls, durations))
+    path = nominal_path(scenario.start, controls, durations)
     return np.column_stack([path.times, path.poses])
 
 

@@ -58,8 +58,8 @@ class SavedPlan(msgspec.Struct):
 class CycleTimes(msgspec.Struct):
     """Processor time (ms) that planning took in a cycle of a drive."""
 
-    median: float
-    max: float
+    median: float | None  # null if nothing was planned
+    max: float | None
 
 
 class SavedDrive(msgspec.Struct):
@@ -71,8 +71,9 @@ class SavedDrive(msgspec.Struct):
     reach: Annotated[float, msgspec.Meta(gt=0.0)] | None  # m, of the sensor; null: it sees everything
     planning_ms: CycleTimes
     control_period: Annotated[float, msgspec.Meta(gt=0.0, le=FARTHEST)]  # s
-    speeds: Annotated[list[tuple[Number, Number]], msgspec.Meta(min_length=1)]
-    courses: Annotated[list[SavedSchedule], msgspec.Meta(min_length=1)]
+    speeds: list[tuple[Number, Number]]
+    courses: list[SavedSchedule]
+    reason: str = ""  # why nothing was driven
 
 
 class SavedFleet(msgspec.Struct):

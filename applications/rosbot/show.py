@@ -111,7 +111,7 @@ def redraw_drive(file: Path) -> Path | None:
         picture.unlink(missing_ok=True)
         return None
     scenario = read_scenario(scenario_beside(file))
-    trajectory = replay(scenario, np.array(drive.speeds), drive.control_period).trajectory
+    trajectory = replay(scenario, np.array(drive.speeds).reshape(-1, 2), drive.control_period).trajectory
     ways = [np.array(course.points).reshape(-1, 3) for course in drive.courses]
     save_figure(draw_drive(scenario, trajectory, ways, Sensor(drive.reach or math.inf)), picture)
     return picture
@@ -142,10 +142,10 @@ def drive_line(name: str, drive: SavedDrive) -> str:
     cycle, end = drive.planning_ms, len(drive.speeds) * drive.control_period
     end = end if drive.arrival_time is None else drive.arrival_time
     clearance = "" if drive.clearance is None else f", clearance {drive.clearance:.3f} m"
-    return (
-        f"{name}: {drive.status}, {end:.2f} s{clearance}, "
-        f"planning {cycle.median:.0f} ms a cycle, at most {cycle.max:.0f} ms"
-    )
+    if drive.reason:
+        return f"{name}: {drive.status}, {drive.reason}"
+    planning = f"planning {_text(cycle.median, 0)} ms a cycle, at most {_text(cycle.max, 0)} ms"
+    return f"{name}: {drive.status}, {end:.2f} s{clearance}, {planning}"
 
 
 def fleet_line(name: str, fleet: SavedFleet) -> str:

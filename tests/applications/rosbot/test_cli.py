@@ -190,8 +190,17 @@ def test_a_drive_among_movers_can_be_replayed(capsys, scenario_file, law_file, t
 
 
 def test_a_robot_that_is_not_driven_leaves_nothing(capsys, scenario_file, law_file, tmp_path):
-    lagging, out = scenario_file(model="dynamic_unicycle"), tmp_path / "out"
-    _fails(capsys, "drive", lagging, "--out", out, "--law", law_file, sentence=["the loop drives a unicycle"])
+    car, out = scenario_file(model="car", robot=SCENARIO["robot"] | {"turning_radius": 0.5}), tmp_path / "out"
+    _fails(
+        capsys,
+        "drive",
+        car,
+        "--out",
+        out,
+        "--law",
+        law_file,
+        sentence=["the robot is a car; the loop drives"],
+    )
     assert not out.exists()
 
 

@@ -114,3 +114,23 @@ def test_a_fleet_without_plans_says_why(tmp_path, capsys):
     assert main(["show", str(tmp_path)]) == 0
     assert capsys.readouterr().out == "fleet: unreachable, no way\n"
     assert not (tmp_path / "fleet.png").exists()
+
+
+def test_a_drive_that_never_began_says_why(tmp_path, capsys):
+    nothing = {
+        "status": "unreachable",
+        "reason": "no way",
+        "arrival_time": None,
+        "clearance": None,
+        "reach": 3.0,
+    }
+    nothing |= {
+        "planning_ms": {"median": None, "max": None},
+        "control_period": 0.05,
+        "speeds": [],
+        "courses": [],
+    }
+    (tmp_path / "drive.json").write_text(json.dumps(nothing))
+    (tmp_path / "scenario_drive.json").write_text(json.dumps(SCENE))
+    assert main(["show", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.startswith("a crossing: unreachable, no way\ndrawn: ")
