@@ -62,7 +62,9 @@ def certified_clearance(
         ]
         if obstacles.field is not None:
             tails = np.vstack([centers[1:], centers[-1:]])
-            gaps.append(float(np.min(obstacles.field.along(centers, tails) - lost - turned)) - circle[2])
+            gaps.append(
+                float(np.min(obstacles.field.proved_along(centers, tails) - lost - turned)) - circle[2]
+            )
     nearest = float(np.min(gaps))
     return -np.inf if np.isnan(nearest) else nearest
 
