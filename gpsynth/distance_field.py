@@ -66,19 +66,13 @@ class DistanceField:
     def along(self, heads: Floats, tails: Floats) -> Floats:
         """Lower bounds on the least distances (...) along the straight lines between points (..., 2).
 
-        At nodes they are exact but for rounding, which is deducted; what is missing elsewhere is said in
+        At nodes they are exact but for rounding, which `proved_along` deducts; what is missing elsewhere is said in
         `kernels/field.py`.
         """
-        from gpsynth.kernels.field import squares_along
+        return rooted(self._squares_along(_lines(heads, tails))).reshape(heads.shape[:-1])
 
-        lines = np.ascontiguousarray(np.concatenate([heads, tails], axis=-1).reshape(-1, 4))
-        lines.setflags(write=False)
-        found = np.empty(len(lines))
-        squares_along(self.squares, self.grid, lines, found)
-        return self._rounded_down(found, lines).reshape(heads.shape[:-1])
-
-    def _rounded_down(self, found: Floats, lines: Floats) -> Floats:
-        """The roots (n,) of squares found along lines (n, 4), less what rounding can do to both.
+    def proved_along(self, heads: Floats, tails: Floats) -> Floats:
+        """The same, less what rounding can do.
 
         A computed square is off by a share of itself and of the square of the size of all that it is made of: s, the
         widths of the grid and the places seen from its corner. The interpolation of four squares of at most 2 (d^2 +
@@ -86,14 +80,30 @@ class DistanceField:
         line doubles that, its square length being 8 s^2 at most. Nodes are off by u times their coordinates, which
         moves what is occupied by as much.
         """
+        lines = _lines(heads, tails)
+        found = self._squares_along(lines)
         size = self.spacing * max(self.squares.shape) + np.abs(lines - np.tile(self.corner, 2)).max(axis=1)
-        squares = found - 1024.0 * ROUNDING * (np.abs(found) + size**2)
-        roots: Floats = rooted(squares) - 16.0 * ROUNDING * np.abs(self.corner).max()
-        return roots
+        roots = rooted(found - 1024.0 * ROUNDING * (np.abs(found) + size**2))
+        proved: Floats = roots - 16.0 * ROUNDING * np.abs(self.corner).max()
+        return proved.reshape(heads.shape[:-1])
+
+    def _squares_along(self, lines: Floats) -> Floats:
+        from gpsynth.kernels.field import squares_along
+
+        found = np.empty(len(lines))
+        squares_along(self.squares, self.grid, lines, found)
+        return found
 
     def joined(self, squares: Floats) -> "DistanceField":
         """The field of what is occupied here and what another field on the same nodes has the squares of."""
         return DistanceField(np.minimum(self.squares, squares), self.corner, self.spacing)
+
+
+def _lines(heads: Floats, tails: Floats) -> Floats:
+    """Straight lines (n, 4) between points (..., 2), read-only."""
+    lines = np.ascontiguousarray(np.concatenate([heads, tails], axis=-1).reshape(-1, 4))
+    lines.setflags(write=False)
+    return lines
 
 
 def rooted(squares: Floats) -> Floats:

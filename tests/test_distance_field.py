@@ -33,7 +33,7 @@ def test_distances_of_nodes_are_exact(parts):
     assert field.squares.shape == (24 * parts + 1, 31 * parts + 1)
     assert np.max(np.abs(np.maximum(found, 0.0) - outside)) < 1e-7  # roots of rounding errors near zero
     interior = np.all((nodes > CORNER + 0.06) & (nodes < CORNER + WIDTH * np.array([31, 24]) - 0.06), axis=1)
-    assert np.max(np.abs(np.maximum(-found, 0.0) - inside)[interior]) < 2e-6
+    assert np.max(np.abs(np.maximum(-found, 0.0) - inside)[interior]) < 1e-7
 
 
 def test_a_bound_is_never_above_the_distance_and_little_below():
@@ -87,7 +87,10 @@ def test_rounding_lets_no_bound_rise_above_the_distance(corner, spacing, across,
         x[150:] = wall + (beyond + 3.0 * spacing) * rng.normal(size=50)
         points = np.column_stack([x, row])
         back = np.column_stack([np.where(x > wall, 1.0, -1.0) * 10.0 ** rng.uniform(-9.0, 1.0, 200), 0.0 * x])
-        for found in (field.at(points), field.along(points, points + spacing * back)):
+        for found in (
+            field.proved_along(points, points),
+            field.proved_along(points, points + spacing * back),
+        ):
             distances = [abs(Fraction(each) - Fraction(wall)) for each in x.tolist()]
             assert all(
                 Fraction(bound) <= exact for bound, exact in zip(found.tolist(), distances, strict=True)

@@ -13,6 +13,7 @@ import numpy as np
 from applications.rosbot.approaches import Indices, Parts, least_gap
 from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, arcs
 from applications.rosbot.chords import Chords, chords_of, gaps_of_circles, gaps_of_room
+from applications.rosbot.controls import held
 from applications.rosbot.encounters import least_distance
 from applications.rosbot.lag_errors import errors
 from applications.rosbot.lags import lagging_path, nominal_speeds
@@ -54,10 +55,9 @@ def certify(
     """The certificate of (v, omega) pairs (n, 2), each held for `period` seconds (one number, or one per pair).
 
     `until` (s) is the arrival, after which the robot stands. Other robots are kept clear of even then, obstacles up to
-    the arrival alone.
+    the arrival alone. Raises ScenarioError if these are no controls.
     """
-    controls = np.asarray(controls, dtype=np.float64).reshape(-1, 2)
-    durations = np.broadcast_to(np.asarray(period, dtype=np.float64), len(controls))
+    controls, durations = held(controls, period)
     begins = np.cumsum(durations) - durations
     kept = np.clip(until - begins, 0.0, durations)
     lags = scenario.model == "dynamic_unicycle"

@@ -63,6 +63,6 @@ def gaps_of_room(chords: Chords, scenario: Scenario) -> Floats:
     """Lower bounds (p,) on the distance from the room's distance field; infinity without a room."""
     if scenario.field is None:
         return np.full(len(chords.times) - 1, np.inf)
-    distances = scenario.field.along(chords.heads, chords.tails)
+    distances = scenario.field.proved_along(chords.heads, chords.tails)
     gaps: Floats = np.min(distances - chords.radii - chords.lost, axis=1)
     return gaps

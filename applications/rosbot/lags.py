@@ -90,6 +90,11 @@ def nominal_speeds(controls: Floats, durations: Floats) -> tuple[Speed, Speed]:
     return v, omega
 
 
+def nominal_path(start: Floats, controls: Floats, durations: Floats) -> LaggingPath:
+    """The path of the nominal robot from rest under (v, omega) pairs (m, 2), as long as they last."""
+    return lagging_path(start, durations, *nominal_speeds(controls, durations))
+
+
 def _after(speed: Speed, part: np.ndarray[tuple[int], np.dtype[np.intp]], elapsed: Floats) -> Floats:
     """The speed so long after the beginnings of some commands."""
     error = speed.wanted[part] - speed.first[part]

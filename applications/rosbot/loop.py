@@ -17,6 +17,7 @@ from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Sensor, scene_ahead
 from applications.rosbot.simulated_robot import Flaws, SimulatedRobot
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.schedule import Schedule
@@ -71,12 +72,18 @@ def drive_scenario(
     """Drive a simulated robot to the goal and plan on in every cycle; the same seed gives the same run.
 
     The first course is the schedule, or to stand still; without `settings` nothing is planned and it is followed to
-    its end. Raises ScenarioError if more circles move than the sensor can tell apart, or the
-    robot is no unicycle.
+    its end. Raises ScenarioError as `check_drivable`, and if an argument is of a wrong kind.
     """
-    sensor.check(scenario)
-    if scenario.model != "unicycle":
-        raise ScenarioError(f"the robot is a {scenario.model}; the loop drives a unicycle")
+    for name, value, kind in (
+        ("scenario", scenario, Scenario),
+        ("law", law, Law),
+        ("flaws", flaws, Flaws),
+        ("sensor", sensor, Sensor),
+    ):
+        check_kind(name, value, kind, error=ScenarioError)
+    check_kind("schedule", schedule, Schedule, error=ScenarioError, optional=True)
+    check_kind("settings", settings, Replanning, error=ScenarioError, optional=True)
+    check_drivable(scenario, sensor)
     law = law.with_limits(*zip(scenario.speed_limits, scenario.turn_limits, strict=True))
     robot = SimulatedRobot.drawn(flaws, stream(seed, ROBOT))
     first = Course.of(schedule or standing(scenario.start), settings.points if settings else 1)
@@ -97,6 +104,13 @@ def drive_scenario(
         applied.append(speeds)
     controls = np.concatenate(applied)
     return Drive(controls, replay(scenario, controls, PERIOD), np.array(cycles), tuple(courses))
+
+
+def check_drivable(scenario: Scenario, sensor: Sensor) -> None:
+    """Raise ScenarioError if more circles move than the sensor can tell apart, or the robot is no unicycle."""
+    sensor.check(scenario)
+    if scenario.model != "unicycle":
+        raise ScenarioError(f"the robot is a {scenario.model}; the loop drives a unicycle")
 
 
 def _driven(scenario: Scenario, law: Law, robot: SimulatedRobot, now: _Moment) -> tuple[_Moment, Floats]:

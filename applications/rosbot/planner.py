@@ -21,6 +21,8 @@ from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort, Found, Search
 from applications.rosbot.vehicles import plant_of, steered, widened
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_function, check_kind, check_number
+from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Particles, Plan
 from gpsynth.schedule import Schedule, Schedules
@@ -56,7 +58,8 @@ class PlanReport:
     law: Law | None = None
     replay: Replay | None = None  # by the simulator that shares nothing with the planner's
     certificate: Certificate | None = None  # for the path between its samples
-    history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
+    # (evaluations, arrival time in s, planning time in s) at every improvement
+    history: tuple[tuple[int, float, float], ...] = ()
     ended: Ended = "complete"
     via: tuple[tuple[float, ...], ...] = ()  # places that are passed on the way: x, y and tolerance in m
 
@@ -98,8 +101,15 @@ def plan_scenario(
     does Ctrl-C once there is a plan. With a `previous` report, whose plan has been driven for `elapsed` seconds, what
     is left of that plan is improved under the scenario as it is now: its start is where the robot is, its circles where
     they are. Only if no collision-free plan lies near, everything is searched. Raises ScenarioError if there is no law,
-    or one that does not steer v and omega.
+    or one that does not steer v and omega, and if an argument is of a wrong kind.
     """
+    check_kind("scenario", scenario, Scenario, error=ScenarioError)
+    check_kind("effort", effort, Effort, error=ScenarioError)
+    check_kind("previous", previous, PlanReport, error=ScenarioError, optional=True)
+    check_function("callback", callback, ScenarioError, optional=True)
+    check_number("elapsed", elapsed, ScenarioError)
+    if not 0.0 <= elapsed < np.inf:
+        raise ScenarioError(f"elapsed is {elapsed} s; expected a finite number, at least 0")
     watch = _Watch(time.perf_counter(), effort, callback)
     problems = problems_of(scenario, laws)
     at_rest = replay(scenario, np.empty((0, 2)), PERIOD)
@@ -137,7 +147,9 @@ class _Watch:
         spent = report.evaluations
         try:
             for found in search:
-                report = _confirmed(replace(report, evaluations=spent + found.evaluations), found)
+                seconds = time.perf_counter() - self.began
+                so_far = replace(report, evaluations=spent + found.evaluations, planning_time=seconds)
+                report = _confirmed(so_far, found)
                 ended = self._ended(report)
                 if ended != "complete":
                     return self.stamped(replace(report, ended=ended))
@@ -231,7 +243,7 @@ def _confirmed(report: PlanReport, found: Found) -> PlanReport:
         law=found.law,
         replay=check,
         certificate=proof,
-        history=(*report.history, (report.evaluations, plan.arrival_time)),
+        history=(*report.history, (report.evaluations, plan.arrival_time, report.planning_time)),
     )
 
 

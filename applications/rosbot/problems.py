@@ -10,6 +10,7 @@ from applications.rosbot.model import reached
 from applications.rosbot.others import tracks_of
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.vehicles import law_for, plant_of, step_of, widened
+from gpsynth.checks import check_kind
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.obstacles import Obstacles
@@ -67,9 +68,11 @@ def problems_of(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, 
 
     Raises ScenarioError if there is no law, or one that does not steer v and omega.
     """
+    check_kind("laws", laws, list, tuple, error=ScenarioError)
     if not laws:
         raise ScenarioError("a plan needs at least one law")
     for law in laws:
+        check_kind("one of the laws", law, Law, error=ScenarioError)
         if law.plant.control_names != ("v", "omega"):
             raise ScenarioError(
                 f"the law steers {', '.join(law.plant.control_names)}; a scenario needs v, omega"

@@ -56,6 +56,7 @@ class Replanning:
     @classmethod
     def keeping(cls, margin: float) -> "Replanning":
         """The same with another margin (m), half of which is the least clearance."""
+        check_number("margin of replanning", margin)
         return cls(margin=margin, least=0.5 * margin)
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gpsynth.arrays import Floats
-from gpsynth.checks import check_number
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.intervals import enclose
 from gpsynth.obstacles import Obstacles
@@ -35,8 +35,13 @@ def certified_clearance(
     trajectory at its ticks, under the controls of the trajectory, circles moving as the problem says. How far the ticks
     are off is not proved: it is the error of the integrator, which half the step shows. Minus infinity where nothing
     can be said: the plant has operations without a rule, or no box holds its flow. `row` is that of the plant's
-    parameters. Raises ProblemError if the error is no number of at least 0.
+    parameters. Raises ProblemError if the error is no number of at least 0, or there is no such row.
     """
+    check_kind("problem", problem, Problem)
+    check_kind("trajectory", trajectory, Trajectory)
+    check_whole("row", row, 0)
+    if row >= len(problem.plant_parameters):
+        raise ProblemError(f"row is {row}; the problem has {len(problem.plant_parameters)} rows")
     check_number("error", error)
     if not 0.0 <= error < np.inf:
         raise ProblemError(f"error must be finite and at least 0, not {error}")
@@ -57,7 +62,9 @@ def certified_clearance(
         ]
         if obstacles.field is not None:
             tails = np.vstack([centers[1:], centers[-1:]])
-            gaps.append(float(np.min(obstacles.field.along(centers, tails) - lost - turned)) - circle[2])
+            gaps.append(
+                float(np.min(obstacles.field.proved_along(centers, tails) - lost - turned)) - circle[2]
+            )
     nearest = float(np.min(gaps))
     return -np.inf if np.isnan(nearest) else nearest
 

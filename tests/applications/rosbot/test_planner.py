@@ -71,6 +71,9 @@ def test_a_plan_is_near_its_bound(report):
 def test_the_history_ends_at_the_plan(report):
     assert report.history[-1][1] == report.plan.arrival_time
     assert report.history[-1][0] <= report.evaluations
+    seconds = [each[2] for each in report.history]
+    assert 0.0 < seconds[0] <= seconds[-1] <= report.planning_time
+    assert sorted(seconds) == seconds
 
 
 def test_the_same_seed_gives_the_same_plan_for_any_number_of_threads(report):
