@@ -5,6 +5,7 @@ far a way turns around a point inside an island of obstacles differs between two
 all islands exactly if one can be drawn into the other.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,20 +39,33 @@ class Lattice:
     free: npt.NDArray[np.bool_]  # (r, c)
     graph: csr_array  # (r c, r c) lengths in m
 
+    def index(self, place: Floats) -> tuple[int, int]:
+        """Row and column of the point that is nearest to a place (2,)."""
+        first, beyond = self.points[0, 0], self.points[-1, -1]
+        spread = np.array(self.free.shape[::-1]) - 1
+        column, row = np.rint(spread * np.clip((place - first) / np.maximum(beyond - first, 1e-9), 0.0, 1.0))
+        return int(row), int(column)
+
 
 def ways(start: Floats, goal: Floats, field: DistanceField, clearance: float, *, count: int) -> list[Floats]:
     """Up to `count` polylines (n, 2) that keep `clearance` (m) from what a field is of, the shortest first.
 
     Start and goal (2,) are joined to the nearest free points of the lattice, whatever is between.
     """
+    for lattice in lattices(field, clearance):
+        found = _ways(lattice, start, goal, count)
+        if found:
+            islands = _islands(lattice)
+            return [taut(way, field, clearance, islands) for way in found]
+    return []
+
+
+def lattices(field: DistanceField, clearance: float) -> Iterator[Lattice]:
+    """Lattices over a field, each finer than the one before, that have free points."""
     for spacing in SPACINGS:
         lattice = lattice_of(field, clearance, max(spacing, _least_spacing(field)))
         if lattice.free.any():
-            found = _ways(lattice, start, goal, count)
-            if found:
-                islands = _islands(lattice)
-                return [taut(way, field, clearance, islands) for way in found]
-    return []
+            yield lattice
 
 
 def _least_spacing(field: DistanceField) -> float:
@@ -99,9 +113,8 @@ def _ways(lattice: Lattice, start: Floats, goal: Floats, count: int) -> list[Flo
     _, firsts = np.unique(whole, axis=0, return_index=True)
     found = []
     for node in order[np.sort(firsts)[:count]].tolist():
-        there, back = (_chain(parents, node) for parents in before)
-        chain = there[::-1] + back[1:]
-        found.append(np.vstack([start, places[chain], goal]))
+        there, back = (chain(parents, node) for parents in before)
+        found.append(np.vstack([start, places[there[::-1] + back[1:]], goal]))
     return found
 
 
@@ -110,11 +123,12 @@ def _nearest(lattice: Lattice, point: Floats) -> int:
     return int(np.argmin(np.where(lattice.free, apart, np.inf)))
 
 
-def _chain(before: Indices, node: int) -> list[int]:
-    chain = [node]
-    while before[chain[-1]] >= 0:
-        chain.append(int(before[chain[-1]]))
-    return chain
+def chain(before: Indices, node: int) -> list[int]:
+    """The points from one to the root of a tree."""
+    found = [node]
+    while before[found[-1]] >= 0:
+        found.append(int(before[found[-1]]))
+    return found
 
 
 def _islands(lattice: Lattice) -> Floats:

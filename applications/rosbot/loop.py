@@ -16,6 +16,7 @@ from applications.rosbot.replay import Replay, drive, replay, within
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Sensor, scene_ahead
 from applications.rosbot.simulated_robot import Flaws, SimulatedRobot
+from applications.rosbot.wayfinder import wayfinder
 from gpsynth.arrays import Floats
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
@@ -79,7 +80,10 @@ def drive_scenario(
         raise ScenarioError(f"the robot is a {scenario.model}; the loop drives a unicycle")
     law = law.with_limits(*zip(scenario.speed_limits, scenario.turn_limits, strict=True))
     robot = SimulatedRobot.drawn(flaws, stream(seed, ROBOT))
-    first = Course.of(schedule or standing(scenario.start), settings.points if settings else 1)
+    first = Course.of(
+        schedule or standing(scenario.start), scenario.goal, settings.points if settings else 1
+    )
+    finder = wayfinder(scenario, (settings.margin, settings.least, 0.0)) if settings else None
     now = _Moment(scenario.start, scenario.start, first, 0.0)
     applied, cycles, courses = list[Floats](), list[float](), list[Course]()
     while len(courses) * CYCLE < scenario.time_limit and not now.arrived:
@@ -89,7 +93,9 @@ def drive_scenario(
             began = time.process_time()
             seen = sensor.seen(scenario, now.estimate[:2], len(cycles) * CYCLE)
             scene = scene_ahead(scenario, seen, _ahead(scenario, law, now), CYCLE)
-            course = replan(scene, law, course, age, settings, seed=seed, path=(SEARCH, len(cycles)))
+            scene, part = finder.look(scene) if finder else (scene, None)
+            path = (SEARCH, len(cycles))
+            course = replan(scene, law, course, age, settings, part=part, seed=seed, path=path)
             age = 0.0
             cycles.append(time.process_time() - began)
         now, speeds = _driven(scenario, law, robot, now)
@@ -103,7 +109,7 @@ def _driven(scenario: Scenario, law: Law, robot: SimulatedRobot, now: _Moment) -
     """A cycle along the course, and the speeds (TICKS, 2) of the robot in it."""
     pose, estimate, arrived, applied = now.pose, now.estimate, False, []
     for tick in range(TICKS):
-        control = law(estimate, now.course.target(now.age + tick * PERIOD, scenario.goal))
+        control = law(estimate, now.course.target(now.age + tick * PERIOD))
         speeds = robot.applied(control)
         poses = _moved(pose, speeds)
         pose, arrived = poses[-1], arrived or bool(np.any(within(scenario, poses)))
@@ -116,7 +122,7 @@ def _ahead(scenario: Scenario, law: Law, now: _Moment) -> Floats:
     """Where a robot without flaws will be after a cycle, (3,)."""
     estimate = now.estimate
     for tick in range(TICKS):
-        control = law(estimate, now.course.target(now.age + tick * PERIOD, scenario.goal))
+        control = law(estimate, now.course.target(now.age + tick * PERIOD))
         estimate = _moved(estimate, control)[-1]
     return estimate
 

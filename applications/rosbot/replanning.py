@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from applications.rosbot.courses import Course, alternatives, anew
+from applications.rosbot.courses import Course, along_route, alternatives, anew
 from applications.rosbot.guides import top_speed
 from applications.rosbot.planner import problem_of
 from applications.rosbot.scenario import Scenario
+from applications.rosbot.wayfinder import Part
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ScenarioError
@@ -90,22 +91,26 @@ def replan(
     elapsed: float,
     settings: Replanning = Replanning(),
     *,
+    part: Part | None = None,
     seed: int = 0,
     path: tuple[int, ...] = (0,),
 ) -> Course:
     """The course from the scene's start on, `elapsed` seconds after the previous one began.
 
-    The law must be for the scene's limits. The same seed and path give the same course.
+    The law must be for the scene's limits; `part` is of the scene's room. The same seed and path give the same course.
     """
     left = previous.remainder(elapsed)
     caution = _caution(scene, law, settings, left, previous.arrival_time - elapsed)
     is_clear = caution.is_clear(left)
     tried = [left.take(np.arange(1)), alternatives(left[0], scene.start, scene.goal)]
+    count = left.points.shape[1]
+    if part is not None:
+        tried.append(Schedules.of([along_route(part.way, count, top_speed(scene))]))
     if not is_clear:
-        tried.append(anew(scene, left.points.shape[1], settings.margin))
+        tried.append(anew(scene, count, settings.margin, part))
     tried.append(left.take(np.arange(1, len(left))))
     vectors = np.concatenate([_vectors(each) for each in tried])[: settings.particles]
-    lower, upper = _box(vectors, scene, left.points.shape[1])
+    lower, upper = _box(vectors, scene, count)
     optimizer = PSO.clerc(lower, upper, size=settings.particles, x0=np.clip(vectors, lower, upper))
     generations = settings.generations if is_clear else settings.anew
     found = minimize(
@@ -118,7 +123,7 @@ def replan(
     )
     best = found.state.best_x[np.argsort(found.state.best_costs, kind="stable")]
     swarm = Schedules(*caution.objective.schedules(best))
-    return _chosen(caution, Schedules.joined([left.take(np.arange(1)), swarm]), settings)
+    return _chosen(caution, Schedules.joined([left.take(np.arange(1)), swarm]), scene, settings)
 
 
 def _caution(scene: Scenario, law: Law, settings: Replanning, left: Schedules, remaining: float) -> Caution:
@@ -140,7 +145,7 @@ def _ample(scene: Scenario) -> float:
     return float(2.0 * (np.hypot(*(scene.goal - scene.start)[:2]) / top_speed(scene) + turn))
 
 
-def _chosen(caution: Caution, courses: Schedules, settings: Replanning) -> Course:
+def _chosen(caution: Caution, courses: Schedules, scene: Scenario, settings: Replanning) -> Course:
     """The best course unless the first, which is followed, is nearly as good; if none is clear, what is clear soon."""
     objective = caution.objective
     points, dwell = courses.points, courses.dwell
@@ -153,6 +158,7 @@ def _chosen(caution: Caution, courses: Schedules, settings: Replanning) -> Cours
         best = int(np.lexsort([costs, np.maximum(settings.least - soon, 0.0)])[0])
     return Course(
         schedule=courses[best],
+        goal=scene.goal,
         arrival_time=float(objective.arrivals(rollouts)[best]),
         clearance=float(rollouts.clearance[best, 0]),
         swarm=courses.take(np.arange(1, 1 + min(settings.kept, len(courses) - 1))),
