@@ -27,6 +27,7 @@ MOST_ISLANDS = 60  # the largest of them count
 LONGER = (1.8, 1.0)  # ways that are so many times longer than the shortest, and so many meters, are left out
 STEP = 0.05  # m, of a way while it is drawn taut
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))  # rows and columns from a point to its neighbors; and back
+EVERYWHERE = frozen(np.array([-np.inf, np.inf] * 2))  # bounds of x and y
 
 Indices = npt.NDArray[np.int64]
 
@@ -47,12 +48,21 @@ class Lattice:
         return int(row), int(column)
 
 
-def ways(start: Floats, goal: Floats, field: DistanceField, clearance: float, *, count: int) -> list[Floats]:
+def ways(
+    start: Floats,
+    goal: Floats,
+    field: DistanceField,
+    clearance: float,
+    *,
+    count: int,
+    bounds: Floats = EVERYWHERE,
+) -> list[Floats]:
     """Up to `count` polylines (n, 2) that keep `clearance` (m) from what a field is of, the shortest first.
 
-    Start and goal (2,) are joined to the nearest free points of the lattice, whatever is between.
+    They stay within bounds (4,) of x and y. Start and goal (2,) are joined to the nearest free points of the lattice,
+    whatever is between.
     """
-    for lattice in lattices(field, clearance):
+    for lattice in lattices(field, clearance, bounds):
         found = _ways(lattice, start, goal, count)
         if found:
             islands = _islands(lattice)
@@ -60,10 +70,10 @@ def ways(start: Floats, goal: Floats, field: DistanceField, clearance: float, *,
     return []
 
 
-def lattices(field: DistanceField, clearance: float) -> Iterator[Lattice]:
+def lattices(field: DistanceField, clearance: float, bounds: Floats) -> Iterator[Lattice]:
     """Lattices over a field, each finer than the one before, that have free points."""
     for spacing in SPACINGS:
-        lattice = lattice_of(field, clearance, max(spacing, _least_spacing(field)))
+        lattice = lattice_of(field, clearance, max(spacing, _least_spacing(field)), bounds)
         if lattice.free.any():
             yield lattice
 
@@ -73,12 +83,13 @@ def _least_spacing(field: DistanceField) -> float:
     return field.spacing * float(np.sqrt(rows * columns / MOST_POINTS))
 
 
-def lattice_of(field: DistanceField, clearance: float, spacing: float) -> Lattice:
-    """The lattice over a field, its lines proved to keep `clearance` (m)."""
+def lattice_of(field: DistanceField, clearance: float, spacing: float, bounds: Floats) -> Lattice:
+    """The lattice over a field, within bounds (4,) of x and y, its lines proved to keep `clearance` (m)."""
     rows, columns = field.squares.shape
     x, y = (np.arange(0.0, field.spacing * (n - 1), spacing) for n in (columns, rows))
     points = np.stack(np.meshgrid(field.corner[0] + x, field.corner[1] + y), axis=-1)
-    free = field.at(points) >= clearance
+    low, high = bounds.reshape(2, 2).T
+    free = (field.at(points) >= clearance) & np.all((low <= points) & (points <= high), axis=-1)
     number = np.arange(free.size).reshape(free.shape)
     heads, tails = [], []
     for down, right in STEPS:

@@ -80,9 +80,7 @@ def drive_scenario(
         raise ScenarioError(f"the robot is a {scenario.model}; the loop drives a unicycle")
     law = law.with_limits(*zip(scenario.speed_limits, scenario.turn_limits, strict=True))
     robot = SimulatedRobot.drawn(flaws, stream(seed, ROBOT))
-    first = Course.of(
-        schedule or standing(scenario.start), scenario.goal, settings.points if settings else 1
-    )
+    first = Course.of(schedule or standing(scenario.start), scenario.goal, settings.points if settings else 1)
     finder = wayfinder(scenario, (settings.margin, settings.least, 0.0)) if settings else None
     now = _Moment(scenario.start, scenario.start, first, 0.0)
     applied, cycles, courses = list[Floats](), list[float](), list[Course]()

@@ -53,7 +53,8 @@ def routes(scenario: Scenario, *, count: int = 5, margin: float = 0.0) -> list[R
 def routes_in_room(scenario: Scenario, field: DistanceField, count: int, clearance: float) -> list[Route]:
     """Routes that keep `clearance` (m) from the scenario's circles and from what a field is of."""
     field = with_discs(field, scenario.circles[:, [0, 1, 4]])
-    found = ways(scenario.start[:2], scenario.goal[:2], field, clearance, count=count)
+    ends = scenario.start[:2], scenario.goal[:2]
+    found = ways(*ends, field, clearance, bounds=scenario.bounds, count=count)
     return [Route(way, float(np.hypot(*np.diff(way, axis=0).T).sum())) for way in found]
 
 

@@ -33,7 +33,7 @@ class Part:
     field: DistanceField  # around it
 
     def routes(self, scene: Scenario, count: int, margin: float) -> list[Route]:
-        """Up to `count` routes to the scene's goal that keep `margin` (m), around what moves as well, where it is now."""
+        """Up to `count` routes to the scene's goal that keep `margin` (m), also from what moves, where it is now."""
         return routes_in_room(scene, self.field, count, scene.radius + margin)
 
 
@@ -81,7 +81,7 @@ def wayfinder(scenario: Scenario, clearances: tuple[float, ...]) -> Wayfinder | 
     resting = ~np.any(scenario.circles[:, 2:4], axis=1)
     field = with_discs(scenario.field, scenario.circles[resting][:, [0, 1, 4]])
     for clearance in clearances:
-        for lattice in lattices(field, scenario.radius + clearance):
+        for lattice in lattices(field, scenario.radius + clearance, scenario.bounds):
             found = _tree(lattice, field, scenario.radius + clearance, scenario.goal[:2])
             if np.isfinite(found.lengths[found.nearest[lattice.index(scenario.start[:2])]]):
                 return found
@@ -101,6 +101,8 @@ def _around(field: DistanceField, points: Floats) -> DistanceField:
     shape = np.array(field.squares.shape[::-1])
     low, high = points.min(axis=0) - AROUND, points.max(axis=0) + AROUND
     left, below = np.clip(np.floor((low - field.corner) / field.spacing), 0, shape - 2).astype(int)
-    right, above = np.clip(np.ceil((high - field.corner) / field.spacing) + 1, [left + 2, below + 2], shape).astype(int)
+    right, above = np.clip(
+        np.ceil((high - field.corner) / field.spacing) + 1, [left + 2, below + 2], shape
+    ).astype(int)
     corner = field.corner + field.spacing * np.array([left, below])
     return DistanceField(field.squares[below:above, left:right], corner, field.spacing)
