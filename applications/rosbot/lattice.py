@@ -116,14 +116,13 @@ def _ways(lattice: Lattice, start: Floats, goal: Floats, count: int) -> list[Flo
     shortest = total.min()
     if not np.isfinite(shortest):
         return []
-    kept = np.flatnonzero(total <= LONGER[0] * shortest + LONGER[1])
+    kept = np.flatnonzero(total <= LONGER[0] * shortest + LONGER[1])  # with the ways to both ends
     islands = _islands(lattice)
-    turns = _turned(places, before[0], islands) - _turned(places, before[1], islands)
-    order = kept[np.argsort(total[kept], kind="stable")]
-    whole = np.rint((turns[order] - turns[order[0]]) / (2.0 * np.pi)).astype(np.int64)
-    _, firsts = np.unique(whole, axis=0, return_index=True)
+    turns = np.subtract(*(_turned(places, parents, kept, islands) for parents in before))
+    ranks = np.argsort(total[kept], kind="stable")
+    whole = np.rint((turns[ranks] - turns[ranks[0]]) / (2.0 * np.pi)).astype(np.int64)
     found = []
-    for node in order[np.sort(firsts)[:count]].tolist():
+    for node in kept[ranks[_distinct(whole)[:count]]].tolist():
         there, back = (chain(parents, node) for parents in before)
         found.append(np.vstack([start, places[there[::-1] + back[1:]], goal]))
     return found
@@ -155,18 +154,30 @@ def _islands(lattice: Lattice) -> Floats:
     return lattice.points.reshape(-1, 2)[first] + 1e-3
 
 
-def _turned(places: Floats, before: Indices, islands: Floats) -> Floats:
-    """How far (n, i) the way from the root of a tree to each of its points turns around the islands, in rad.
+def _turned(places: Floats, before: Indices, kept: Indices, islands: Floats) -> Floats:
+    """How far (k, i) the ways from the root of a tree to some of its points turn around the islands, in rad.
 
-    Each point knows the turn of its last line; doubling how far back a point looks sums up all lines of its way.
+    All points on these ways must be among them. Each knows the turn of its last line; doubling how far back a point
+    looks sums up all lines of its way.
     """
-    parent = np.where(before >= 0, before, np.arange(len(before)))
-    angles = _bearings(places, islands)
+    own = np.arange(len(kept))
+    rank = np.zeros(len(before), dtype=np.int64)
+    rank[kept] = own
+    parent = np.where(before[kept] < 0, own, rank[before[kept].clip(0)])
+    angles = _bearings(places[kept], islands)
     turned = _wrapped(angles - angles[parent])
     while np.any(parent != parent[parent]):
         turned = turned + turned[parent]
         parent = parent[parent]
     return turned
+
+
+def _distinct(rows: Indices) -> list[int]:
+    """The numbers of the rows (n, i) that are like none before them."""
+    firsts: dict[bytes, int] = {}
+    for number, row in enumerate(np.ascontiguousarray(rows, dtype=np.int16)):
+        firsts.setdefault(row.tobytes(), number)
+    return list(firsts.values())
 
 
 def _bearings(places: Floats, islands: Floats) -> Floats:
@@ -202,8 +213,12 @@ def _shortened(way: Floats, field: DistanceField, clearance: float, islands: Flo
     while kept[-1] < last:
         here = kept[-1]
         ahead = way[here + 1 :]
-        seen = field.along(np.broadcast_to(way[here], ahead.shape), ahead) >= clearance
-        straight = _wrapped(bearings[here + 1 :] - bearings[here])
-        seen &= np.all(np.abs(turned[here + 1 :] - turned[here] - straight) < np.pi, axis=1)
-        kept.append(here + 1 + int(np.flatnonzero(seen)[-1] if seen.any() else 0))
+        seen = (
+            here
+            + 1
+            + np.flatnonzero(field.along(np.broadcast_to(way[here], ahead.shape), ahead) >= clearance)
+        )
+        straight = _wrapped(bearings[seen] - bearings[here])
+        same = np.all(np.abs(turned[seen] - turned[here] - straight) < np.pi, axis=1)
+        kept.append(int(np.max(seen[same], initial=here + 1)))
     return frozen(way[kept])

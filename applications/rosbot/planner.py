@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
+from math import inf
 from types import MappingProxyType
 from typing import Literal
 
@@ -34,6 +35,7 @@ __all__ = ["PERIOD", "Callback", "Effort", "PlanReport", "plan_scenario", "probl
 
 PERIOD = 0.05  # s of the control: 2.5 cm at 0.5 m/s; twice as long costs time at every switch, half as long computing
 INSIDE = (0.001, 0.002)  # m, rad: how far within the tolerance a plan arrives, so that no rounding undoes it
+CONFIRMING = 0.01  # s that it takes to confirm a plan, until it is known
 ROUNDING = 1e-9  # share of a bound that its arithmetic may be off by
 
 Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
@@ -115,35 +117,52 @@ def plan_scenario(
         return watch.stamped(replace(arrived, certificate=stay))
     report = PlanReport("not_found", "", 0.0, 0, scenario, seed)
     if previous is not None and previous.plan is not None and previous.law is not None:
-        report = watch.improved(report, _followed(report, previous.plan, previous.law, elapsed, effort))
+        found = _followed(report, previous.plan, previous.law, elapsed, effort, stop=watch.stop)
+        report = watch.improved(report, found)
         if report.status == "planned" or report.ended != "complete":
             return report
     verdict = _verdict(scenario)
     if verdict.status == "unreachable":
         return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
+    if watch.is_over():
+        return watch.stamped(replace(report, ended="deadline"))
     ways = routes(scenario, margin=effort.scouts.margin)
     for attempt in range(effort.attempts):
-        search = Search(scenario, ways, problems, effort, seed, attempt, threads)
+        search = Search(scenario, ways, problems, effort, seed, attempt, threads, watch.stop)
         report = watch.improved(report, search.run())
         if report.status == "planned" or report.ended != "complete":
             break
     return report
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class _Watch:
     """Keeps the fastest plan of a search that the other simulator confirms, and says when to end."""
 
     began: float
     effort: Effort
     callback: "Callback | None"
+    confirming: float = (
+        CONFIRMING  # s that it takes to confirm a plan; so much before the deadline a round is broken off
+    )
+
+    @property
+    def stop(self) -> Callable[[], bool] | None:
+        """Whether the deadline is near, as a question; nobody needs to ask it if there is none."""
+        return self.is_over if self.effort.deadline < inf else None
+
+    def is_over(self) -> bool:
+        """Whether the deadline is near."""
+        return time.perf_counter() - self.began >= self.effort.deadline - self.confirming
 
     def improved(self, report: PlanReport, search: Iterator[Found]) -> PlanReport:
         """The report with the fastest plan of a search, or with the reason why there is none."""
         spent = report.evaluations
         try:
             for found in search:
+                since = time.perf_counter()
                 report = _confirmed(replace(report, evaluations=spent + found.evaluations), found)
+                self.confirming = max(self.confirming, time.perf_counter() - since)
                 ended = self._ended(report)
                 if ended != "complete":
                     return self.stamped(replace(report, ended=ended))
@@ -163,7 +182,7 @@ class _Watch:
             return "callback"
         if report.evaluations >= self.effort.rollouts:
             return "rollouts"
-        return "deadline" if time.perf_counter() - self.began >= self.effort.deadline else "complete"
+        return "deadline" if self.is_over() else "complete"
 
 
 def problem_of(scenario: Scenario, law: Law) -> Problem:
@@ -270,14 +289,20 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
 
 
 def _followed(
-    report: PlanReport, previous: Plan, law: Law, elapsed: float, effort: Effort
+    report: PlanReport,
+    previous: Plan,
+    law: Law,
+    elapsed: float,
+    effort: Effort,
+    *,
+    stop: Callable[[], bool] | None,
 ) -> Iterator[Found]:
     """Plans near what is left of the previous one; none if that was to stay, or of a robot with other states."""
     plant = plant_of(report.scenario)
     if not len(previous.schedule.dwell) or law.plant.state_names != plant.state_names:
         return iter(())
     [(problem, law)] = _problems(report.scenario, [law])
-    return follow(problem, law, previous, elapsed, effort.followers, report.seed)
+    return follow(problem, law, previous, elapsed, effort.followers, report.seed, stop=stop)
 
 
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from applications.rosbot.gaps import gaps_to_room, least_gap
+from applications.rosbot.gaps import least_gap, least_gap_to_room
 from applications.rosbot.lags import nominal_path
 from applications.rosbot.others import Other
 from applications.rosbot.scenario import Scenario
@@ -107,7 +107,7 @@ def clearance(scenario: Scenario, trajectory: Floats) -> float:
     t, poses = trajectory[:, 0], trajectory[:, 1:]
     gap = least_gap(scenario.body, scenario.circles, poses, t)
     if scenario.room is not None:
-        gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
+        gap = min(gap, least_gap_to_room(scenario.body, scenario.room, poses))
     return min(gap, *(_gap_to(other, scenario.radius, trajectory) for other in scenario.others), np.inf)
 
 

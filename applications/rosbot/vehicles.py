@@ -3,7 +3,7 @@
 A law for the unicycle drives all of them. Equilibrium points are poses: what further states a plant has are 0 there.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -76,6 +76,7 @@ def pose_plans(
     budget: float,
     path: tuple[int, ...],
     threads: int = 1,
+    stop: Callable[[], bool] | None = None,
 ) -> Iterator[Plan]:
     """`gpsynth.planning.plans` for a plant with a pose and perhaps more, all points being poses (3,)."""
     plant = problem.plant
@@ -90,6 +91,7 @@ def pose_plans(
         budget=budget,
         path=path,
         threads=threads,
+        stop=stop,
     )
     return found if not len(further) else map(_narrowed, found)
 

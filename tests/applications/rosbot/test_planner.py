@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import along, nearby, repeated, schedules_along
 from gpsynth.errors import ScenarioError
+from gpsynth.evaluate import Evaluator
 from gpsynth.planning import PlanSettings
 from gpsynth.seeds import stream
 
@@ -135,6 +137,26 @@ def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
     now = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=1e-9))
     assert now.ended == "deadline"
     assert now.evaluations < 300
+
+
+@pytest.mark.parametrize("deadline", [0.05, 0.37, 0.5])
+def test_a_deadline_breaks_a_round_off(monkeypatch, report, deadline):
+    """By a clock that rollouts alone move on, 0.1 ms each: a round of scouts takes up to 0.2 s, a slice 13 ms."""
+    now, roll = [0.0], Evaluator.of_schedules
+
+    def timed(evaluator, law, points, *rest, **options):
+        now[0] += 1e-4 * len(points)
+        return roll(evaluator, law, points, *rest, **options)
+
+    monkeypatch.setattr(Evaluator, "of_schedules", timed)
+    monkeypatch.setattr(planner, "time", SimpleNamespace(perf_counter=lambda: now[0]))
+    ended = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=deadline))
+    assert (ended.status, ended.ended) == ("planned", "deadline")
+    assert ended.replay.solves
+    assert abs(ended.planning_time - deadline) <= 0.02
+    assert ended.evaluations <= 1e4 * ended.planning_time
+    late = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=1e3))
+    assert np.array_equal(late.plan.schedule.points, report.plan.schedule.points)
 
 
 @pytest.mark.parametrize("wrong", [{"deadline": np.nan}, {"deadline": 0.0}, {"rollouts": -1}])
