@@ -34,7 +34,8 @@ def draw_drive(scenario: Scenario, drive: Drive, sensor: Sensor) -> "Figure":
         places = figure.subplot_mosaic("012;345;ggg", height_ratios=(1.0, 1.0, 0.6))
         instants = np.linspace(0.0, trajectory[-1, 0], INSTANTS)
         for number, instant in enumerate(instants):
-            course = drive.courses[min(int(instant / CYCLE + 1e-9), len(drive.courses) - 1)]
+            cycle = min(int(instant / CYCLE + 1e-9), len(drive.courses) - 1)
+            course = drive.courses[cycle] if drive.courses else None
             so_far = trajectory[trajectory[:, 0] <= instant + 1e-9]
             _draw_instant(places[str(number)], scenario, so_far, course, sensor)
         _draw_gaps(places["g"], scenario, trajectory, instants)
@@ -43,12 +44,12 @@ def draw_drive(scenario: Scenario, drive: Drive, sensor: Sensor) -> "Figure":
 
 
 def _draw_instant(
-    axes: "Axes", scenario: Scenario, trajectory: Floats, course: Course, sensor: Sensor
+    axes: "Axes", scenario: Scenario, trajectory: Floats, course: Course | None, sensor: Sensor
 ) -> None:
     """The plane at the end of a trajectory (N, 4): what the robot sees, where it was, and its course."""
     axes.plot(*scenario.goal[:2], "*", color=RED, markersize=8.0, label="goal", zorder=5)
     axes.plot(*trajectory[:, 1:3].T, color=BLACK, linewidth=1.2, label="path", zorder=4)
-    places = course.schedule.points[:, :2].T
+    places = course.schedule.points[:, :2].T if course else np.empty((2, 0))
     axes.plot(*places, ".", color=BLUE, markersize=3.0, label="equilibrium points", zorder=4)
     _draw_robot(axes, trajectory[-1, 1:], scenario.body, sensor.reach)
     if scenario.room is not None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from applications.rosbot.courses import Course, standing
 from applications.rosbot.planner import PERIOD
+from applications.rosbot.reachability import reachability
 from applications.rosbot.replanning import Replanning, replan
 from applications.rosbot.replay import Replay, drive, replay, within
 from applications.rosbot.scenario import Scenario
@@ -30,12 +31,13 @@ ROBOT, SEARCH = range(2)  # random streams
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """A run from the start to the goal, or to the time limit."""
+    """A run from the start to the goal, or to the time limit; none where what rests leaves no way to the goal."""
 
     applied: Floats  # (n, 2) speeds of the robot (m/s, rad/s), a row a period
     replay: Replay  # of these speeds
     cycles: Floats  # (c,) s of processor time that planning took
     courses: tuple[Course, ...]  # that were followed, one a cycle
+    unreachable: str = ""  # why the goal is proved to be so
 
     @property
     def arrives(self) -> bool:
@@ -72,12 +74,16 @@ def drive_scenario(
     """Drive a simulated robot to the goal and plan on in every cycle; the same seed gives the same run.
 
     The first course is the schedule, or to stand still; without `settings` nothing is planned and it is followed to
-    its end. Raises ScenarioError if more circles move than the sensor can tell apart, or the
-    robot is no unicycle.
+    its end. If what rests leaves no way to the goal, nothing is driven. Raises ScenarioError if more circles move than
+    the sensor can tell apart, or the robot is no unicycle.
     """
     sensor.check(scenario)
     if scenario.model != "unicycle":
         raise ScenarioError(f"the robot is a {scenario.model}; the loop drives a unicycle")
+    verdict = reachability(scenario)
+    if verdict.status == "unreachable" and settings is not None:
+        nothing = np.empty((0, 2))
+        return Drive(nothing, replay(scenario, nothing, PERIOD), np.empty(0), (), verdict.reason)
     law = law.with_limits(*zip(scenario.speed_limits, scenario.turn_limits, strict=True))
     robot = SimulatedRobot.drawn(flaws, stream(seed, ROBOT))
     first = Course.of(schedule or standing(scenario.start), scenario.goal, settings.points if settings else 1)

@@ -115,6 +115,8 @@ def write_drive_run(run: Run, scenario_file: Path, drive: Drive, law: Law, senso
     copy_map(scenario_file, run.folder)
     write_drive(drive, law, seed, path)
     save_figure(draw_drive(scenario, drive, sensor), path.with_suffix(".png"))
+    if drive.unreachable:
+        return f"{scenario.name}: {status_of(drive)}, {drive.unreachable}"
     check = drive.replay
     return (
         f"{scenario.name}: {status_of(drive)}, {check.trajectory[-1, 0]:.2f} s, clearance {check.clearance:.3f} m, "
