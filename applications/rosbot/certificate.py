@@ -83,7 +83,7 @@ def certify(
 
 def _lagging(scenario: Scenario, controls: Floats, durations: Floats) -> Arcs:
     """The path of the nominal robot with lags, in pieces so short that ERROR covers what makes them no arcs."""
-    path = nominal_path(scenario.start, controls, durations)
+    path = nominal_path(scenario.start, controls, durations, scenario.speeds)
     v, omega = (np.maximum(np.abs(each[:-1]), np.abs(each[1:])) for each in (path.v, path.omega))
     return Arcs(path.times, path.poses, v, omega, np.diff(path.times), ERROR, ERROR)
 

@@ -21,7 +21,7 @@ from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort, Found, Search
-from applications.rosbot.vehicles import law_for, plant_of, steered, step_of, widened
+from applications.rosbot.vehicles import first_state, law_for, plant_of, steered, step_of, widened
 from gpsynth.arrays import Floats
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
@@ -190,7 +190,7 @@ def problem_of(scenario: Scenario, law: Law) -> Problem:
     tolerances = scenario.position_tolerance, scenario.heading_tolerance
     return replace(
         _like(law, *tolerances, step_of(scenario, PERIOD)),
-        starts=widened(scenario.start, law.plant),
+        starts=first_state(scenario, law.plant),
         goal=widened(scenario.goal, law.plant),
         horizon=max(PERIOD, scenario.time_limit - PERIOD),
         obstacles=_obstacles(scenario),
@@ -266,7 +266,7 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
     stay = Trajectory(
         plant=law.plant,
         t=np.zeros(1),
-        x=widened(scenario.start[np.newaxis], law.plant),
+        x=first_state(scenario, law.plant)[np.newaxis],
         u=np.empty((0, 2)),
         target=widened(scenario.goal[np.newaxis], law.plant),
         arrival=0.0,

@@ -12,6 +12,7 @@ from applications.rosbot.courses import Course, along_route, alternatives, anew
 from applications.rosbot.guides import top_speed
 from applications.rosbot.planner import problem_of
 from applications.rosbot.scenario import Scenario
+from applications.rosbot.vehicles import POSE, widened
 from applications.rosbot.wayfinder import Part
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_number, check_whole
@@ -67,21 +68,38 @@ class Caution:
     least: float  # m
 
     def __call__(self, vectors: Floats, limits: Floats | None = None) -> Floats:
-        """Costs (N,) of vectors (N, d), with limits (N,) as the objective has them."""
-        points, dwell = self.objective.schedules(vectors)
-        return self.costs(self.objective.rollouts(points, dwell, limits), points)
+        """Costs (N,) of vectors (N, d), the poses (k, 3) and dwell times (k,) of courses, with limits (N,) of these."""
+        courses = self.courses(vectors)
+        return self.costs(self.rollouts(courses, limits), courses)
 
-    def costs(self, rollouts: Rollouts, points: Floats) -> Floats:
+    def courses(self, vectors: Floats) -> Schedules:
+        """What vectors (N, d) stand for."""
+        count = self.objective.settings.points
+        return Schedules(vectors[:, : POSE * count].reshape(-1, count, POSE), vectors[:, POSE * count :])
+
+    def rollouts(self, courses: Schedules, limits: Floats | None = None) -> Rollouts:
+        """Rollouts (N, 1) of courses, with limits (N,) as the objective has them."""
+        return self.objective.rollouts(self._states(courses), courses.dwell, limits)
+
+    def costs(self, rollouts: Rollouts, courses: Schedules) -> Floats:
         """Costs (N,) of what has been rolled out."""
         missing = self.least - rollouts.clearance[:, 0]
         crash = np.where(missing > 0.0, CRASH * (1.0 + missing), 0.0)
-        costs: Floats = self.objective.costs(rollouts, points) + crash
+        costs: Floats = self.objective.costs(rollouts, self._states(courses)) + crash
         return costs
+
+    def soon(self, courses: Schedules) -> Floats:
+        """The least clearance (N,) of courses in the next moments."""
+        evaluator, law = self.objective.evaluator, self.objective.law
+        return evaluator.of_schedules(law, self._states(courses), courses.dwell, SOON).clearance[:, 0]
 
     def is_clear(self, course: Schedules) -> bool:
         """Whether the first of these courses leads to the goal with at least the least clearance."""
-        rollouts = self.objective.rollouts(course.points[:1], course.dwell[:1])
+        rollouts = self.rollouts(course.take(np.arange(1)))
         return bool(np.isfinite(rollouts.arrival[0, 0]) and rollouts.clearance[0, 0] >= self.least)
+
+    def _states(self, courses: Schedules) -> Floats:
+        return widened(courses.points, self.objective.law.plant)
 
 
 def replan(
@@ -122,7 +140,7 @@ def replan(
         limits=optimizer.limits,
     )
     best = found.state.best_x[np.argsort(found.state.best_costs, kind="stable")]
-    swarm = Schedules(*caution.objective.schedules(best))
+    swarm = caution.courses(best)
     return _chosen(caution, Schedules.joined([left.take(np.arange(1)), swarm]), scene, settings)
 
 
@@ -148,14 +166,12 @@ def _ample(scene: Scenario) -> float:
 def _chosen(caution: Caution, courses: Schedules, scene: Scenario, settings: Replanning) -> Course:
     """The best course unless the first, which is followed, is nearly as good; if none is clear, what is clear soon."""
     objective = caution.objective
-    points, dwell = courses.points, courses.dwell
-    rollouts = objective.rollouts(points, dwell)
-    costs = caution.costs(rollouts, points)
+    rollouts = caution.rollouts(courses)
+    costs = caution.costs(rollouts, courses)
     costs[0] -= objective.settings.beta * settings.gain / objective.budget
     best = int(np.argmin(costs))
     if rollouts.clearance[best, 0] < settings.least:
-        soon = objective.evaluator.of_schedules(objective.law, points, dwell, SOON).clearance[:, 0]
-        best = int(np.lexsort([costs, np.maximum(settings.least - soon, 0.0)])[0])
+        best = int(np.lexsort([costs, np.maximum(settings.least - caution.soon(courses), 0.0)])[0])
     return Course(
         schedule=courses[best],
         goal=scene.goal,

@@ -63,7 +63,7 @@ def replay(
 def _driven(scenario: Scenario, controls: Floats, durations: Floats) -> Floats:
     if scenario.model != "dynamic_unicycle":
         return drive(scenario.start, controls, durations)
-    path = nominal_path(scenario.start, controls, durations)
+    path = nominal_path(scenario.start, controls, durations, scenario.speeds)
     return np.column_stack([path.times, path.poses])
 
 

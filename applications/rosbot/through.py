@@ -84,7 +84,7 @@ def plan_through(
 def check_via(scenario: Scenario, via: npt.ArrayLike) -> Floats:
     """The places as an array (m, 3); raises ScenarioError if one cannot be passed."""
     if scenario.model == "dynamic_unicycle":
-        raise ScenarioError("a leg begins at rest, so via-points are for robots without lags")
+        raise ScenarioError("via-points are for robots without lags")
     places = np.asarray(via, dtype=np.float64)
     if places.ndim != 2 or places.shape[1] != 3 or not np.all(np.isfinite(places)):
         raise ScenarioError(

@@ -57,6 +57,11 @@ def widened(poses: Floats, plant: Plant) -> Floats:
     return np.concatenate([poses, np.zeros((*poses.shape[:-1], further))], axis=-1)
 
 
+def first_state(scenario: Scenario, plant: Plant) -> Floats:
+    """The state (n,) that the scenario's robot starts in."""
+    return np.append(scenario.start, scenario.speeds)[: len(plant.state_names)]
+
+
 def steered(scenario: Scenario, controls: Floats) -> Floats:
     """The v and omega (m, 2) that a robot makes of the controls it is given."""
     if scenario.model != "car":
