@@ -14,11 +14,11 @@ from scipy.sparse.csgraph import dijkstra
 from applications.rosbot.guides import top_speed
 from applications.rosbot.lattice import Indices, Lattice, chain, lattices, taut
 from applications.rosbot.routes import Route, routes_in_room, with_discs
-from applications.rosbot.scenario import Scenario
+from applications.rosbot.scenario import COARSE, Scenario
 from gpsynth.arrays import Floats, frozen
 from gpsynth.distance_field import DistanceField
 
-AHEAD = 10.0  # s at top speed to the farthest place that is planned for
+AHEAD = 15.0  # s at top speed to the farthest place that is planned for
 PASSING = 0.3  # m from that place, where it is passed
 ANY_HEADING = 4.0  # rad, more than half a turn
 FURTHER = 1.0  # m of the way beyond that place, so that drawing it taut does not depend on where it is cut
@@ -97,12 +97,13 @@ def _tree(lattice: Lattice, field: DistanceField, clearance: float, goal: Floats
 
 
 def _around(field: DistanceField, points: Floats) -> DistanceField:
-    """The part of a field around points (n, 2)."""
-    shape = np.array(field.squares.shape[::-1])
-    low, high = points.min(axis=0) - AROUND, points.max(axis=0) + AROUND
-    left, below = np.clip(np.floor((low - field.corner) / field.spacing), 0, shape - 2).astype(int)
-    right, above = np.clip(
-        np.ceil((high - field.corner) / field.spacing) + 1, [left + 2, below + 2], shape
-    ).astype(int)
+    """The part of a field around points (n, 2), its nodes up to COARSE apart."""
+    shape, stride = np.array(field.squares.shape[::-1]), max(1, int(COARSE / field.spacing + 1e-9))
+    low, high = (
+        (end - field.corner) / field.spacing
+        for end in (points.min(axis=0) - AROUND, points.max(axis=0) + AROUND)
+    )
+    left, below = np.clip(np.floor(low), 0, shape - 1 - stride).astype(int)
+    right, above = np.clip(np.ceil(high) + 1, [left + stride + 1, below + stride + 1], shape).astype(int)
     corner = field.corner + field.spacing * np.array([left, below])
-    return DistanceField(field.squares[below:above, left:right], corner, field.spacing)
+    return DistanceField(field.squares[below:above:stride, left:right:stride], corner, stride * field.spacing)
