@@ -24,9 +24,9 @@ def drive_document(drive: Drive, law: Law, seed: int) -> dict[str, Any]:
     """The drive as a JSON-ready dictionary.
 
     `speeds` hold the robot's v (m/s) and omega (rad/s), each row for one `control_period` (s); `trajectory` is their
-    replay once a period. `courses` has one entry a `cycle` (s), with what it promised when it was planned: null where
-    it does not arrive, or nothing is in the way. Where the goal is unreachable, `reason` says why, and nothing is
-    driven.
+    replay once a period. `courses` has one entry a `cycle` (s), with what it promised up to its goal when it was
+    planned: null where it does not arrive, or nothing is in the way. Where the goal is unreachable, `reason` says why,
+    and nothing is driven.
     """
     cycles = 1e3 * np.quantile(drive.cycles, (0.5, 0.99, 1.0)) if len(drive.cycles) else np.full(3, np.inf)
     return {

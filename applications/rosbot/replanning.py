@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from applications.rosbot.courses import Course, along_route, alternatives, anew
+from applications.rosbot.courses import Course, along_route, alternatives, anew, standing
 from applications.rosbot.guides import top_speed
 from applications.rosbot.planner import problem_of
 from applications.rosbot.scenario import Scenario
@@ -141,7 +141,8 @@ def replan(
     )
     best = found.state.best_x[np.argsort(found.state.best_costs, kind="stable")]
     swarm = caution.courses(best)
-    return _chosen(caution, Schedules.joined([left.take(np.arange(1)), swarm]), scene, settings)
+    stay = Schedules.of([standing(scene.start).split(count)])
+    return _chosen(caution, Schedules.joined([left.take(np.arange(1)), swarm, stay]), scene, settings)
 
 
 def _caution(scene: Scenario, law: Law, settings: Replanning, left: Schedules, remaining: float) -> Caution:
@@ -164,7 +165,10 @@ def _ample(scene: Scenario) -> float:
 
 
 def _chosen(caution: Caution, courses: Schedules, scene: Scenario, settings: Replanning) -> Course:
-    """The best course unless the first, which is followed, is nearly as good; if none is clear, what is clear soon."""
+    """The best course unless the first, which is followed, is nearly as good; if none is clear, what is clear soon.
+
+    The last is to stay.
+    """
     objective = caution.objective
     rollouts = caution.rollouts(courses)
     costs = caution.costs(rollouts, courses)
@@ -177,7 +181,7 @@ def _chosen(caution: Caution, courses: Schedules, scene: Scenario, settings: Rep
         goal=scene.goal,
         arrival_time=float(objective.arrivals(rollouts)[best]),
         clearance=float(rollouts.clearance[best, 0]),
-        swarm=courses.take(np.arange(1, 1 + min(settings.kept, len(courses) - 1))),
+        swarm=courses.take(np.arange(1, 1 + min(settings.kept, len(courses) - 2))),
     )
 
 

@@ -124,12 +124,10 @@ def test_a_far_goal_in_a_room_is_driven_to_along_the_way_there():
     hall = {"bounds": [-4.0, 4.0, -4.0, 6.0], "room": walls, "circles": [[-2.5, 3.0, 0.2, 0.0, 0.25]]}
     run = drive_scenario(scene(start=[-1.0, 0.0, 1.5], goal=[1.0, 0.0, -1.5], **hall), LAW)
     assert (run.arrives, run.is_safe) == (True, True)
-    assert run.replay.arrival_time < 20.0  # the taut string takes 17.4 s
+    assert run.replay.arrival_time < 25.0  # the taut string takes 17.4 s, and the mover is on it for some
     goals = np.array([course.goal for course in run.courses[1:]])
-    assert np.all(goals[0] != [1.0, 0.0, -1.5])
-    assert np.all(goals[-1] == [1.0, 0.0, -1.5])
-    ahead = np.hypot(*(goals[:, :2] - goals[0, :2]).T)
-    assert ahead[15] > 0.3
+    assert np.array_equal(goals[-1], [1.0, 0.0, -1.5])
+    assert goals[0, 1] > 1.5 > goals[20, 1] > 0.0
 
 
 def test_a_late_robot_is_told():

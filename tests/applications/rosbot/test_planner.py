@@ -139,13 +139,13 @@ def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
     assert now.evaluations < 300
 
 
-@pytest.mark.parametrize("deadline", [0.05, 0.37, 0.5])
+@pytest.mark.parametrize("deadline", [1.3, 3.7, 5.0])
 def test_a_deadline_breaks_a_round_off(monkeypatch, report, deadline):
-    """By a clock that rollouts alone move on, 0.1 ms each: a round of scouts takes up to 0.2 s, a slice 13 ms."""
+    """By a clock that rollouts alone move on, 1 ms each: a generation of scouts takes 0.2 s, a slice 0.128 s."""
     now, roll = [0.0], Evaluator.of_schedules
 
     def timed(evaluator, law, points, *rest, **options):
-        now[0] += 1e-4 * len(points)
+        now[0] += 1e-3 * len(points)
         return roll(evaluator, law, points, *rest, **options)
 
     monkeypatch.setattr(Evaluator, "of_schedules", timed)
@@ -153,9 +153,9 @@ def test_a_deadline_breaks_a_round_off(monkeypatch, report, deadline):
     ended = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=deadline))
     assert (ended.status, ended.ended) == ("planned", "deadline")
     assert ended.replay.solves
-    assert abs(ended.planning_time - deadline) <= 0.02
-    assert ended.evaluations <= 1e4 * ended.planning_time
-    late = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=1e3))
+    assert abs(ended.planning_time - deadline) <= 0.129
+    assert ended.evaluations <= 1e3 * ended.planning_time
+    late = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=1e6))
     assert np.array_equal(late.plan.schedule.points, report.plan.schedule.points)
 
 
