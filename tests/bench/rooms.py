@@ -9,10 +9,12 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
 import applications.rosbot
+from applications.rosbot import planner
 from applications.rosbot.crossings import JITTER, PACE, ROOM, SOONEST, mover
 from applications.rosbot.drive_file import status_of
 from applications.rosbot.loop import drive_scenario
@@ -30,6 +32,7 @@ from gpsynth.seeds import stream
 OFFICE = Path(applications.rosbot.__file__).parent / "scenarios" / "office.json"
 WITHIN = 2.0  # s
 MOVERS = 12
+DEADLINES = (0.1, 0.2, 0.5, 0.8, 1.0, 2.0)  # s
 LANES, POINTS, HORIZON = 256, 6, 12.0
 
 
@@ -104,6 +107,15 @@ def driven(scenario: Scenario, seed: int) -> str:
     )
 
 
+def overrun(deadline: float, seed: int) -> str:
+    """How much later than its deadline (s) a search ends, processor time being its clock."""
+    clock, planner.time = planner.time, SimpleNamespace(perf_counter=time.process_time)
+    report = plan_scenario(fresh(), [default_law()], seed=seed, effort=Effort(deadline=deadline))
+    planner.time = clock
+    late = report.planning_time - deadline
+    return f"{deadline:10.2f} {seed:4} {report.status:>10} {report.evaluations:8} {1e3 * late:8.1f}"
+
+
 def rollouts() -> str:
     """The time of a lane's period without obstacles, beside a field, and among circles."""
     scenario, rng = fresh(), np.random.default_rng(1)
@@ -137,6 +149,10 @@ def main() -> None:
     print(f"seed  first s  arrival  after {WITHIN:g} s    final  total s  clear mm")
     for seed in range(asked.seeds):
         print(office(seed), flush=True)
+    print("\ndeadline s seed     status rollouts  late ms")
+    for deadline in DEADLINES:
+        for seed in range(2):
+            print(overrun(deadline, seed), flush=True)
     drive_scenario(replace(busy(0), time_limit=0.3), default_law())  # compiles
     print("\nmovers seed     status  arrival  clear m  median     p99      max ms a cycle")
     for seed in range(3):
