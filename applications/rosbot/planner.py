@@ -142,9 +142,7 @@ class _Watch:
     began: float
     effort: Effort
     callback: "Callback | None"
-    confirming: float = (
-        CONFIRMING  # s that it takes to confirm a plan; so much before the deadline a round is broken off
-    )
+    confirming: float = CONFIRMING  # s, the longest so far; a round is broken off so much before the deadline
 
     @property
     def stop(self) -> Callable[[], bool] | None:
