@@ -8,14 +8,16 @@ import pytest
 
 from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
+from gpsynth.obstacles import Obstacles
 from gpsynth.optimizers import PSO, DifferentialEvolution, minimize
 from gpsynth.planning import Objective, PlanSettings, plan, plans
 from gpsynth.planning.literal import plan_literally
 from gpsynth.planning.rounds import rescored, vectors_of
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
+from gpsynth.rollouts import Rollouts
 from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import simulate
 from gpsynth.tracing import trace

@@ -8,25 +8,26 @@ import numpy as np
 from applications.rosbot.courses import Course
 from applications.rosbot.loop import CYCLE, Drive
 from applications.rosbot.plan_file import once_a_period
-from applications.rosbot.planner import PERIOD
+from applications.rosbot.problems import PERIOD
+from applications.rosbot.sensing import Sensor
 from gpsynth.files import write_json
 from gpsynth.law import Law
 
 FORMAT = "rosbot-drive/1"
 
 
-def write_drive(drive: Drive, law: Law, seed: int, path: Path) -> None:
+def write_drive(drive: Drive, law: Law, sensor: Sensor, seed: int, path: Path) -> None:
     """Write a drive as JSON, whole or not at all; raises FileError if that is not possible."""
-    write_json(path, drive_document(drive, law, seed))
+    write_json(path, drive_document(drive, law, sensor, seed))
 
 
-def drive_document(drive: Drive, law: Law, seed: int) -> dict[str, Any]:
+def drive_document(drive: Drive, law: Law, sensor: Sensor, seed: int) -> dict[str, Any]:
     """The drive as a JSON-ready dictionary.
 
     `speeds` hold the robot's v (m/s) and omega (rad/s), each row for one `control_period` (s); `trajectory` is their
     replay once a period. `courses` has one entry a `cycle` (s), with what it promised up to its goal when it was
     planned: null where it does not arrive, or nothing is in the way. Where the goal is unreachable, `reason` says why,
-    and nothing is driven.
+    and nothing is driven. `reach` (m) is the sensor's, null if it sees everything.
     """
     cycles = 1e3 * np.quantile(drive.cycles, (0.5, 0.99, 1.0)) if len(drive.cycles) else np.full(3, np.inf)
     return {
@@ -37,6 +38,7 @@ def drive_document(drive: Drive, law: Law, seed: int) -> dict[str, Any]:
         "clearance": _finite(drive.replay.clearance),
         "seed": seed,
         "law": {"hash": law.hash, "formulas": list(law.formulas())},
+        "reach": _finite(sensor.reach),
         "cycle": CYCLE,
         "planning_ms": dict(zip(("median", "p99", "max"), map(_finite, cycles.tolist()), strict=True)),
         "control_period": PERIOD,

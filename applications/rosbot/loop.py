@@ -11,7 +11,7 @@ import numpy as np
 
 from applications.rosbot.courses import Course, standing
 from applications.rosbot.lags import nominal_path
-from applications.rosbot.planner import PERIOD
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.reachability import reachability
 from applications.rosbot.replanning import Replanning, replan
 from applications.rosbot.replay import Replay, drive, replay, within
@@ -21,6 +21,7 @@ from applications.rosbot.simulated_robot import Flaws, SimulatedRobot
 from applications.rosbot.vehicles import law_for, plant_of
 from applications.rosbot.wayfinder import wayfinder
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.schedule import Schedule
@@ -76,12 +77,19 @@ def drive_scenario(
     """Drive a simulated robot to the goal and plan on in every cycle; the same seed gives the same run.
 
     The first course is the schedule, or to stand still; without `settings` nothing is planned and it is followed to
-    its end. If what rests leaves no way to the goal, nothing is driven. Raises ScenarioError if more circles move than
-    the sensor can tell apart, or the robot is a car.
+    its end. If what rests leaves no way to the goal, nothing is driven. Raises ScenarioError as `check_drivable`, and
+    if an argument is of a wrong kind.
     """
-    sensor.check(scenario)
-    if scenario.model == "car":
-        raise ScenarioError("the robot is a car; the loop drives unicycles, with lags or without")
+    for name, value, kind in (
+        ("scenario", scenario, Scenario),
+        ("law", law, Law),
+        ("flaws", flaws, Flaws),
+        ("sensor", sensor, Sensor),
+    ):
+        check_kind(name, value, kind, error=ScenarioError)
+    check_kind("schedule", schedule, Schedule, error=ScenarioError, optional=True)
+    check_kind("settings", settings, Replanning, error=ScenarioError, optional=True)
+    check_drivable(scenario, sensor)
     verdict = reachability(scenario)
     if verdict.status == "unreachable" and settings is not None:
         nothing = np.empty((0, 2))
@@ -111,6 +119,13 @@ def drive_scenario(
         applied.append(speeds)
     controls = np.concatenate(applied)
     return Drive(controls, replay(scenario, controls, PERIOD), np.array(cycles), tuple(courses))
+
+
+def check_drivable(scenario: Scenario, sensor: Sensor) -> None:
+    """Raise ScenarioError if more circles move than the sensor can tell apart, or the robot is a car."""
+    sensor.check(scenario)
+    if scenario.model == "car":
+        raise ScenarioError("the robot is a car; the loop drives unicycles, with lags or without")
 
 
 def _driven(scenario: Scenario, law: Law, robot: SimulatedRobot, now: _Moment) -> tuple[_Moment, Floats]:

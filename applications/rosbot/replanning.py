@@ -10,17 +10,18 @@ import numpy as np
 
 from applications.rosbot.courses import Course, along_route, alternatives, anew, standing
 from applications.rosbot.guides import top_speed
-from applications.rosbot.planner import problem_of
+from applications.rosbot.problems import problem_of
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.vehicles import POSE, widened
 from applications.rosbot.wayfinder import Part
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ScenarioError
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
 from gpsynth.optimizers import PSO, minimize
 from gpsynth.planning import Objective, PlanSettings
+from gpsynth.rollouts import Rollouts
 from gpsynth.schedule import Schedules
 
 CRASH = 1e3  # cost of less clearance than the least, more than that of any delay
@@ -57,6 +58,7 @@ class Replanning:
     @classmethod
     def keeping(cls, margin: float) -> "Replanning":
         """The same with another margin (m), half of which is the least clearance."""
+        check_number("margin of replanning", margin)
         return cls(margin=margin, least=0.5 * margin)
 
 

@@ -10,6 +10,7 @@ from applications.rosbot.gaps import gaps_at, gaps_to_room
 from applications.rosbot.others import Other
 from applications.rosbot.room import Room
 from gpsynth.arrays import Floats, frozen
+from gpsynth.checks import check_kind, check_number
 from gpsynth.distance_field import DistanceField
 from gpsynth.errors import ScenarioError
 
@@ -71,6 +72,7 @@ class Scenario:
         if len(self.footprint):
             _check_footprint(self.footprint)
             object.__setattr__(self, "radius", inner_radius(self.footprint))
+        _check_kinds(self)
         _check_numbers(self)
         _check_model(self)
         _check_obstacles(self)
@@ -113,7 +115,10 @@ class Scenario:
 
 
 def _shaped(name: str, value: object, shape: tuple[int, ...]) -> Floats:
-    array = np.asarray(value, dtype=np.float64)
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ScenarioError(f"{name} must hold numbers in rows of equal length, got {value!r}") from None
     if not array.size and -1 in shape:
         return np.zeros([max(size, 0) for size in shape])
     if array.ndim != len(shape) or any(
@@ -122,6 +127,14 @@ def _shaped(name: str, value: object, shape: tuple[int, ...]) -> Floats:
         wanted = str(shape).replace("-1", "any")
         raise ScenarioError(f"{name} has shape {array.shape}; expected {wanted}")
     return array
+
+
+def _check_kinds(scenario: Scenario) -> None:
+    check_kind("room", scenario.room, Room, error=ScenarioError, optional=True)
+    check_kind("others", scenario.others, tuple, error=ScenarioError)
+    for other in scenario.others:
+        check_kind("one of the others", other, Other, error=ScenarioError)
+    check_kind("name", scenario.name, str, error=ScenarioError)
 
 
 def _check_numbers(scenario: Scenario) -> None:
@@ -136,6 +149,8 @@ def _check_numbers(scenario: Scenario) -> None:
         value = np.asarray(getattr(scenario, name))
         if not np.all(np.abs(value) <= most):
             raise ScenarioError(f"{name} is {value.tolist()}; expected finite numbers within ±{most:g}")
+    for name in ("radius", "turning_radius", "position_tolerance", "heading_tolerance", "time_limit"):
+        check_number(name, getattr(scenario, name), ScenarioError)
     for name in ("position_tolerance", "heading_tolerance", "time_limit"):
         if not 0.0 < getattr(scenario, name) <= MOST:
             raise ScenarioError(

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from gpsynth.arrays import Floats
-from gpsynth.checks import check_kind
+from gpsynth.arrays import Floats, shaped
+from gpsynth.checks import check_function, check_kind, check_number
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, check_law
 from gpsynth.law import Law
@@ -93,6 +93,7 @@ def plan(  # noqa: PLR0913 names each choice as a keyword
     default `default_region`. `callback` is called after every round and stops the search by returning True. The same
     seed and path give the same plan for any number of threads. Raises ProblemError if the parts do not fit together.
     """
+    check_function("callback", callback, optional=True)
     found = plans(
         problem,
         law,
@@ -129,6 +130,7 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
     rounds; once it says so the search ends with the best plan so far.
     """
     _check(problem, law, settings, initial)
+    _check_keywords(problem, region, budget, path)
     problem = weighted(problem, settings.weights)
     evaluator = Evaluator(problem, threads=threads, margin=settings.margin)
     objective = Objective(evaluator, law, settings, budget or problem.horizon)
@@ -278,6 +280,7 @@ def _check(
     if len(problem.starts) != 1:
         raise ProblemError(f"a plan begins at one start; the problem has {len(problem.starts)}")
     check_law(problem, law)
+    check_kind("initial, the schedules to begin with,", initial, list, tuple, Schedules)
     given = [initial.points[0]] if isinstance(initial, Schedules) and len(initial) else []
     for schedule in () if isinstance(initial, Schedules) else initial:
         check_kind("an initial schedule", schedule, Schedule)
@@ -288,3 +291,15 @@ def _check(
                 f"an initial schedule has points of shape {points.shape}; "
                 f"expected ({settings.points}, {problem.starts.shape[1]})"
             )
+
+
+def _check_keywords(
+    problem: Problem, region: tuple[Floats, Floats] | None, budget: float | None, path: tuple[int, ...]
+) -> None:
+    check_kind("path", path, tuple)
+    if budget is not None:
+        check_number("budget", budget)
+        if not 0.0 < budget < np.inf:
+            raise ProblemError(f"budget must be a finite time above 0 s, not {budget}")
+    if region is not None:
+        shaped("region, lowest and highest points,", region, (2, problem.starts.shape[1]))

@@ -18,7 +18,8 @@ from applications.rosbot import planner
 from applications.rosbot.crossings import JITTER, PACE, ROOM, SOONEST, mover
 from applications.rosbot.drive_file import status_of
 from applications.rosbot.loop import drive_scenario
-from applications.rosbot.planner import PlanReport, plan_scenario, problem_of
+from applications.rosbot.planner import PlanReport, plan_scenario
+from applications.rosbot.problems import problem_of
 from applications.rosbot.reachability import reachability
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario

@@ -143,6 +143,9 @@ def test_a_plan_can_be_replayed(capsys, scenario_file, law_file, tmp_path, obsta
     assert (out / "scenario.json").read_bytes() == path.read_bytes()
     assert (out / "plan.png").read_bytes().startswith(b"\x89PNG")
     assert read_progress(out)[-1]["stage"] == "plan room"
+    elapsed = [entry["elapsed"] for entry in read_progress(out)]
+    assert elapsed == sorted(elapsed)
+    assert elapsed[-1] - elapsed[0] < plan["planning_time"]  # when it was found, not when it was written
 
 
 @pytest.mark.slow
@@ -183,7 +186,22 @@ def test_a_drive_among_movers_can_be_replayed(capsys, scenario_file, law_file, t
     assert len(drive["courses"]) == math.ceil(len(drive["speeds"]) / 2)
     assert f"room: arrived, {drive['arrival_time']:.2f} s" in capsys.readouterr().out
     assert (out / "drive.png").read_bytes().startswith(b"\x89PNG")
-    assert (out / "scenario.json").read_bytes() == path.read_bytes()
+    assert (out / "scenario_drive.json").read_bytes() == path.read_bytes()
+
+
+def test_a_robot_that_is_not_driven_leaves_nothing(capsys, scenario_file, law_file, tmp_path):
+    car, out = scenario_file(model="car", robot=SCENARIO["robot"] | {"turning_radius": 0.5}), tmp_path / "out"
+    _fails(
+        capsys,
+        "drive",
+        car,
+        "--out",
+        out,
+        "--law",
+        law_file,
+        sentence=["the robot is a car; the loop drives"],
+    )
+    assert not out.exists()
 
 
 def test_a_drive_that_does_not_arrive_is_4(scenario_file, law_file, tmp_path):
@@ -202,7 +220,7 @@ def test_a_drive_to_an_enclosed_goal_does_not_set_off_and_is_3(capsys, scenario_
     assert drive["reason"] in capsys.readouterr().out
     assert drive["trajectory"] == [[0.0, *SCENARIO["start"]]]
     assert (out / "drive.png").read_bytes().startswith(b"\x89PNG")
-    assert (out / "scenario.json").read_bytes() == path.read_bytes()
+    assert (out / "scenario_drive.json").read_bytes() == path.read_bytes()
 
 
 @pytest.mark.parametrize(
@@ -533,7 +551,7 @@ def test_a_pipe_is_no_plan_and_is_not_waited_for(capsys, tmp_path):
 
 
 def test_a_folder_without_a_run_is_one_sentence(capsys, tmp_path):
-    _fails(capsys, "show", tmp_path, sentence=["neither a plan.json nor a law.json"])
+    _fails(capsys, "show", tmp_path, sentence=["none of law.json, plan.json, drive.json and fleet.json"])
     _fails(capsys, "show", tmp_path / "nowhere.json", sentence=["does not exist"])
 
 

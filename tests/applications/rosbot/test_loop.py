@@ -6,8 +6,8 @@ import pytest
 from applications.rosbot.crossings import crossing
 from applications.rosbot.loop import CYCLE, drive_scenario
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import PERIOD, problem_of
 from applications.rosbot.polar_law import polar_law
+from applications.rosbot.problems import PERIOD, problem_of
 from applications.rosbot.replanning import Replanning
 from applications.rosbot.replay import replay
 from applications.rosbot.room import Room

@@ -13,8 +13,9 @@ from applications.rosbot.following import nearest_time
 from applications.rosbot.guides import direct_guides, guides_along
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.plan_file import plan_document, write_plan
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario, problem_of
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import HOT, SATURATING, polar_law
+from applications.rosbot.problems import PERIOD, problem_of
 from applications.rosbot.replay import replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
@@ -72,6 +73,9 @@ def test_a_plan_is_near_its_bound(report):
 def test_the_history_ends_at_the_plan(report):
     assert report.history[-1][1] == report.plan.arrival_time
     assert report.history[-1][0] <= report.evaluations
+    seconds = [each[2] for each in report.history]
+    assert 0.0 < seconds[0] <= seconds[-1] <= report.planning_time
+    assert sorted(seconds) == seconds
 
 
 def test_the_same_seed_gives_the_same_plan_for_any_number_of_threads(report):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from applications.rosbot.courses import Course
-from applications.rosbot.planner import problem_of
+from applications.rosbot.problems import problem_of
 from applications.rosbot.replanning import CRASH, SOON, Caution, Replanning, replan
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.stabilizer import default_law

@@ -8,8 +8,9 @@ from scipy.integrate import solve_ivp
 
 from applications.rosbot.certificate import certify
 from applications.rosbot.model import FAMILY, car, dynamic_unicycle, unicycle
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import SATURATING, polar_law
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.stabilizer import default_law
