@@ -16,7 +16,7 @@ from gpsynth.run_files import begin
 PATH = click.Path(path_type=Path)
 SEED = 3  # of the law that comes along
 EXIT_CODES = MappingProxyType({"planned": 0, "unreachable": 3, "not_found": 4})
-NOT_THERE = 4  # exit code of a drive that did not come to its goal without a collision
+DRIVE_EXIT_CODES = MappingProxyType({"arrived": 0, "unreachable": 3, "late": 4, "collision": 4})
 resume_option = click.option(
     "--resume", is_flag=True, help="Go on with the synthesis in the run folder, other options being the same."
 )
@@ -164,9 +164,11 @@ def drive(
     """Drive a simulated robot and plan on at 10 Hz.
 
     What rests is known from the beginning, what moves is seen when it is near. Exit code 0 if the goal is reached
-    without a collision, 4 if not, 2 if the input is wrong.
+    without a collision, 3 if what rests is proved to leave no way to it, 4 if it is not reached otherwise, 2 if the
+    input is wrong.
     """
     with status(LOADING):
+        from applications.rosbot.drive_file import status_of
         from applications.rosbot.loop import check_drivable, drive_scenario
         from applications.rosbot.replanning import Replanning
         from applications.rosbot.saved import read_drive
@@ -192,7 +194,7 @@ def drive(
         )
     path = write_drive_run(run_folder, scenario_file, driven, law, sensor, seed)
     click.echo(drive_line(scenario.name, read_drive(path)))
-    return 0 if driven.arrives and driven.is_safe else NOT_THERE
+    return DRIVE_EXIT_CODES[status_of(driven)]
 
 
 @cli.command()

@@ -80,7 +80,7 @@ def certify(
 
 def _lagging(scenario: Scenario, controls: Floats, durations: Floats) -> Arcs:
     """The path of the nominal robot with lags, in pieces that are nearly arcs."""
-    speeds = nominal_speeds(controls, durations)
+    speeds = nominal_speeds(controls, durations, scenario.speeds)
     path = lagging_path(scenario.start, durations, *speeds)
     error, turn_error = errors(path, durations, *speeds)
     v, omega = (np.maximum(np.abs(each[:-1]), np.abs(each[1:])) for each in (path.v, path.omega))

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf
 from types import MappingProxyType
 from typing import Literal
 
@@ -19,7 +20,7 @@ from applications.rosbot.replay import Replay, replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort, Found, Search
-from applications.rosbot.vehicles import plant_of, steered, widened
+from applications.rosbot.vehicles import first_state, plant_of, steered, widened
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_function, check_kind, check_number
 from gpsynth.errors import ScenarioError
@@ -30,6 +31,7 @@ from gpsynth.simulation import Trajectory
 
 __all__ = ["Callback", "Effort", "PlanReport", "plan_scenario"]
 
+CONFIRMING = 0.01  # s that it takes to confirm a plan, until it is known
 ROUNDING = 1e-9  # share of a bound that its arithmetic may be off by
 
 Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
@@ -119,37 +121,52 @@ def plan_scenario(
         return watch.stamped(replace(arrived, certificate=stay))
     report = PlanReport("not_found", "", 0.0, 0, scenario, seed)
     if previous is not None and previous.plan is not None and previous.law is not None:
-        report = watch.improved(report, _followed(report, previous.plan, previous.law, elapsed, effort))
+        found = _followed(report, previous.plan, previous.law, elapsed, effort, stop=watch.stop)
+        report = watch.improved(report, found)
         if report.status == "planned" or report.ended != "complete":
             return report
     verdict = _verdict(scenario)
     if verdict.status == "unreachable":
         return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
+    if watch.is_over():
+        return watch.stamped(replace(report, ended="deadline"))
     ways = routes(scenario, margin=effort.scouts.margin)
     for attempt in range(effort.attempts):
-        search = Search(scenario, ways, problems, effort, seed, attempt, threads)
+        search = Search(scenario, ways, problems, effort, seed, attempt, threads, watch.stop)
         report = watch.improved(report, search.run())
         if report.status == "planned" or report.ended != "complete":
             break
     return report
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class _Watch:
     """Keeps the fastest plan of a search that the other simulator confirms, and says when to end."""
 
     began: float
     effort: Effort
     callback: "Callback | None"
+    confirming: float = CONFIRMING  # s, the longest so far; a round is broken off so much before the deadline
+
+    @property
+    def stop(self) -> Callable[[], bool] | None:
+        """Whether the deadline is near, as a question; nobody needs to ask it if there is none."""
+        return self.is_over if self.effort.deadline < inf else None
+
+    def is_over(self) -> bool:
+        """Whether the deadline is near."""
+        return time.perf_counter() - self.began >= self.effort.deadline - self.confirming
 
     def improved(self, report: PlanReport, search: Iterator[Found]) -> PlanReport:
         """The report with the fastest plan of a search, or with the reason why there is none."""
         spent = report.evaluations
         try:
             for found in search:
-                seconds = time.perf_counter() - self.began
+                since = time.perf_counter()
+                seconds = since - self.began
                 so_far = replace(report, evaluations=spent + found.evaluations, planning_time=seconds)
                 report = _confirmed(so_far, found)
+                self.confirming = max(self.confirming, time.perf_counter() - since)
                 ended = self._ended(report)
                 if ended != "complete":
                     return self.stamped(replace(report, ended=ended))
@@ -169,7 +186,7 @@ class _Watch:
             return "callback"
         if report.evaluations >= self.effort.rollouts:
             return "rollouts"
-        return "deadline" if time.perf_counter() - self.began >= self.effort.deadline else "complete"
+        return "deadline" if self.is_over() else "complete"
 
 
 def _verdict(scenario: Scenario) -> Reachability:
@@ -192,7 +209,7 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
     stay = Trajectory(
         plant=law.plant,
         t=np.zeros(1),
-        x=widened(scenario.start[np.newaxis], law.plant),
+        x=first_state(scenario, law.plant)[np.newaxis],
         u=np.empty((0, 2)),
         target=widened(scenario.goal[np.newaxis], law.plant),
         arrival=0.0,
@@ -215,14 +232,20 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
 
 
 def _followed(
-    report: PlanReport, previous: Plan, law: Law, elapsed: float, effort: Effort
+    report: PlanReport,
+    previous: Plan,
+    law: Law,
+    elapsed: float,
+    effort: Effort,
+    *,
+    stop: Callable[[], bool] | None,
 ) -> Iterator[Found]:
     """Plans near what is left of the previous one; none if that was to stay, or of a robot with other states."""
     plant = plant_of(report.scenario)
     if not len(previous.schedule.dwell) or law.plant.state_names != plant.state_names:
         return iter(())
     [(problem, law)] = problems_of(report.scenario, [law])
-    return follow(problem, law, previous, elapsed, effort.followers, report.seed)
+    return follow(problem, law, previous, elapsed, effort.followers, report.seed, stop=stop)
 
 
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:

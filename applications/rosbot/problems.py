@@ -9,7 +9,7 @@ import numpy as np
 from applications.rosbot.model import reached
 from applications.rosbot.others import tracks_of
 from applications.rosbot.scenario import Scenario
-from applications.rosbot.vehicles import law_for, plant_of, step_of, widened
+from applications.rosbot.vehicles import first_state, law_for, plant_of, step_of, widened
 from gpsynth.checks import check_kind
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
@@ -26,7 +26,7 @@ def problem_of(scenario: Scenario, law: Law) -> Problem:
     tolerances = scenario.position_tolerance, scenario.heading_tolerance
     return replace(
         _like(law, *tolerances, step_of(scenario, PERIOD)),
-        starts=widened(scenario.start, law.plant),
+        starts=first_state(scenario, law.plant),
         goal=widened(scenario.goal, law.plant),
         horizon=max(PERIOD, scenario.time_limit - PERIOD),
         obstacles=_obstacles(scenario),

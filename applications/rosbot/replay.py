@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from applications.rosbot.controls import held
-from applications.rosbot.gaps import gaps_to_room, least_gap
+from applications.rosbot.gaps import least_gap, least_gap_to_room
 from applications.rosbot.lags import nominal_path
 from applications.rosbot.others import Other
 from applications.rosbot.scenario import Scenario
@@ -62,7 +62,7 @@ def replay(
 def _driven(scenario: Scenario, controls: Floats, durations: Floats) -> Floats:
     if scenario.model != "dynamic_unicycle":
         return drive(scenario.start, controls, durations)
-    path = nominal_path(scenario.start, controls, durations)
+    path = nominal_path(scenario.start, controls, durations, scenario.speeds)
     return np.column_stack([path.times, path.poses])
 
 
@@ -106,7 +106,7 @@ def clearance(scenario: Scenario, trajectory: Floats) -> float:
     t, poses = trajectory[:, 0], trajectory[:, 1:]
     gap = least_gap(scenario.body, scenario.circles, poses, t)
     if scenario.room is not None:
-        gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
+        gap = min(gap, least_gap_to_room(scenario.body, scenario.room, poses))
     return min(gap, *(_gap_to(other, scenario.radius, trajectory) for other in scenario.others), np.inf)
 
 

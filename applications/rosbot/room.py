@@ -59,6 +59,11 @@ class Room:
         points = np.concatenate(ends)
         return np.stack([points.min(axis=0), points.max(axis=0)])
 
+    @property
+    def roughness(self) -> float:
+        """How much `gaps` may be less than the distance to the nearest sample of the cells' boundary, m."""
+        return 0.5 * self.width / SAMPLES if self.cells.any() else 0.0
+
     def gaps(self, points: Floats) -> Floats:
         """The distances (N,) of points (N, 2), negative inside a polygon, 0 inside a cell.
 
@@ -76,7 +81,7 @@ class Room:
         if not self.cells.any():
             return gaps
         nearest = self._boundary.query(points)[0]
-        beside = np.sqrt(np.maximum(nearest**2 - (0.5 * self.width / SAMPLES) ** 2, 0.0))
+        beside = np.sqrt(np.maximum(nearest**2 - self.roughness**2, 0.0))
         least: Floats = np.minimum(gaps, np.where(self._covers(points), 0.0, beside))
         return least
 

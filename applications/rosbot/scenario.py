@@ -48,6 +48,7 @@ class Scenario:
     room: Room | None = None  # obstacles at rest that are no circles
     others: tuple[Other, ...] = ()  # robots whose way is known
     model: str = "unicycle"  # or another of MODELS
+    speeds: tuple[float, float] = (0.0, 0.0)  # m/s, rad/s at the start, of a robot with lags; 0 of others
     turning_radius: float = 0.0  # m, the least of a car; 0 of others
     position_tolerance: float = 0.05  # m
     heading_tolerance: float = 0.1  # rad
@@ -65,7 +66,7 @@ class Scenario:
             ("footprint", (-1, 3)),
         ):
             object.__setattr__(self, name, frozen(_shaped(name, getattr(self, name), shape)))
-        for name in ("speed_limits", "turn_limits"):
+        for name in ("speed_limits", "turn_limits", "speeds"):
             low, high = _shaped(name, getattr(self, name), (2,))
             object.__setattr__(self, name, (float(low), float(high)))
         if len(self.footprint):
@@ -137,7 +138,13 @@ def _check_kinds(scenario: Scenario) -> None:
 
 
 def _check_numbers(scenario: Scenario) -> None:
-    largest = {"start": MOST, "goal": MOST, "speed_limits": FASTEST, "turn_limits": FASTEST}
+    largest = {
+        "start": MOST,
+        "goal": MOST,
+        "speed_limits": FASTEST,
+        "turn_limits": FASTEST,
+        "speeds": FASTEST,
+    }
     for name, most in largest.items():
         value = np.asarray(getattr(scenario, name))
         if not np.all(np.abs(value) <= most):
@@ -165,6 +172,10 @@ def _check_numbers(scenario: Scenario) -> None:
 def _check_model(scenario: Scenario) -> None:
     if scenario.model not in MODELS:
         raise ScenarioError(f"the model is {scenario.model!r}; expected {', '.join(MODELS)}")
+    if scenario.model != "dynamic_unicycle" and scenario.speeds != (0.0, 0.0):
+        raise ScenarioError(
+            f"a {scenario.model} begins at the speeds {list(scenario.speeds)}; expected 0, for it has no lags"
+        )
     if scenario.model == "car" and not 0.0 < scenario.turning_radius <= MOST:
         raise ScenarioError(
             f"the car's turning radius is {scenario.turning_radius:g} m; expected more than 0"

@@ -1,6 +1,6 @@
 """The search behind a plan: swarms side by side for each way around the obstacles, the best of them followed up."""
 
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, inf
@@ -121,6 +121,7 @@ class Search:
     seed: int
     attempt: int = 0
     threads: int = 1
+    stop: Callable[[], bool] | None = None  # asked within the rounds; once it says so, the search ends
 
     def run(self) -> Iterator[Found]:
         """The best plan after every round of every stage."""
@@ -175,6 +176,7 @@ class Search:
                 budget=budget,
                 path=task.path,
                 threads=self.threads,
+                stop=self.stop,
             ):
                 yield Found(plan, law, spent + plan.evaluations)
             swarms += task.swarms(plan.particles)

@@ -89,7 +89,7 @@ def check_via(scenario: Scenario, via: npt.ArrayLike) -> Floats:
     """The places as an array (m, 3); raises ScenarioError if one cannot be passed."""
     check_kind("scenario", scenario, Scenario, error=ScenarioError)
     if scenario.model == "dynamic_unicycle":
-        raise ScenarioError("a leg begins at rest, so via-points are for robots without lags")
+        raise ScenarioError("via-points are for robots without lags")
     try:
         places = np.asarray(via, dtype=np.float64)
     except (TypeError, ValueError):

@@ -31,6 +31,7 @@ from gpsynth.optimizers import (
 )
 from gpsynth.planning.objective import Objective
 from gpsynth.planning.settings import PlanSettings
+from gpsynth.planning.slices import Slices, Stop
 from gpsynth.planning.weights import weighted
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule, Schedules
@@ -121,10 +122,12 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
     budget: float | None = None,
     path: tuple[int, ...] = (0,),
     threads: int = 1,
+    stop: Stop | None = None,
 ) -> Iterator[Plan]:
     """The best schedule after every round of `plan`, the first as soon as the initial schedules have been tried.
 
-    Whoever stops asking stops the search, and has the best plan so far.
+    Whoever stops asking stops the search, and has the best plan so far. `stop` is asked again and again within the
+    rounds; once it says so the search ends with the best plan so far.
     """
     _check(problem, law, settings, initial)
     _check_keywords(problem, region, budget, path)
@@ -135,19 +138,31 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
     limits = optimizer.limits if isinstance(optimizer, PSO) else None
     size = settings.particles * settings.swarms
     history: History = ((0, objective.budget),)
-    best, start, end = None, None, 0
+    best, start, end, costs = None, None, 0, Slices(objective, stop)
     for length in lengths(settings):
         end += size * length
-        found = minimize(objective, optimizer, seed=seed, path=path, budget=end, limits=limits, resume=start)
+        found = minimize(
+            costs,
+            optimizer,
+            seed=seed,
+            path=path,
+            budget=end,
+            limits=limits,
+            resume=start,
+            callback=lambda _: costs.is_over,
+        )
         latest = _plan(objective, found, history, best)
         before = objective
         if latest.is_admissible and latest.value < objective.budget:
             # Algorithm 1: T+ <- T_used, and with it the switching step
             objective = replace(objective, budget=max(latest.value, problem.period))
         history = (*history, (found.evaluations, objective.budget))
-        best = replace(latest, evaluations=found.evaluations, history=history)
+        best = replace(latest, evaluations=found.evaluations - costs.skipped, history=history)
         yield best
-        start = found.progress if objective is before else rescored(found, objective)
+        if costs.is_over:
+            return
+        costs.objective = objective
+        start = found.progress if objective is before else rescored(found, costs)
         end += start.evaluations - found.evaluations
 
 
@@ -244,7 +259,7 @@ def _particles(objective: Objective, state: PSOState | DifferentialEvolutionStat
     return Particles(best, np.array([state.best_cost]))
 
 
-def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
+def rescored(found: Result[Any, Floats], objective: Callable[[Floats], Floats]) -> Progress[Any]:
     """The same search under a new T+: what it remembers is scored anew."""
     state = found.state
     if isinstance(state, PSOState):

@@ -210,6 +210,19 @@ def test_a_drive_that_does_not_arrive_is_4(scenario_file, law_file, tmp_path):
     assert json.loads((tmp_path / "out" / "drive.json").read_text())["status"] == "late"
 
 
+def test_a_drive_to_an_enclosed_goal_does_not_set_off_and_is_3(capsys, scenario_file, law_file, tmp_path):
+    path, out = scenario_file(obstacles=[*RING, {**CIRCLE, "vx": 0.1}]), tmp_path / "out"
+    assert _run("drive", path, "--out", out, "--law", law_file) == 3
+    drive = json.loads((out / "drive.json").read_text())
+    assert (drive["status"], drive["arrival_time"]) == ("unreachable", None)
+    assert drive["speeds"] == drive["courses"] == []
+    assert "shut the goal off from the start" in drive["reason"]
+    assert drive["reason"] in capsys.readouterr().out
+    assert drive["trajectory"] == [[0.0, *SCENARIO["start"]]]
+    assert (out / "drive.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "scenario_drive.json").read_bytes() == path.read_bytes()
+
+
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
