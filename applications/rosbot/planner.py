@@ -13,11 +13,11 @@ from applications.rosbot.bounds import lower_bound
 from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.following import follow
 from applications.rosbot.guides import top_speed
+from applications.rosbot.margins import FINER, ways_within
 from applications.rosbot.model import reached
 from applications.rosbot.others import tracks_of
 from applications.rosbot.reachability import Reachability, reachability
 from applications.rosbot.replay import Replay, replay
-from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort, Found, Search
 from applications.rosbot.vehicles import law_for, plant_of, steered, step_of, widened
@@ -121,9 +121,9 @@ def plan_scenario(
     verdict = _verdict(scenario)
     if verdict.status == "unreachable":
         return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
-    ways = routes(scenario, margin=effort.scouts.margin)
     for attempt in range(effort.attempts):
-        search = Search(scenario, ways, problems, effort, seed, attempt, threads)
+        margin, ways = ways_within(scenario, effort.scouts.margin / FINER**attempt)
+        search = Search(scenario, ways, problems, effort, margin, seed, attempt, threads)
         report = watch.improved(report, search.run())
         if report.status == "planned" or report.ended != "complete":
             break

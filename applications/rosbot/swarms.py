@@ -43,7 +43,7 @@ class Effort:
     added: int = 2  # points that refinement adds
     nearness: float = 0.3  # noise of refinement's first schedules, as a share of the scouts'
     weights: Weights = Weights()  # of what counts beside time
-    attempts: int = 3  # with other random numbers and twice the time budget, while nothing is found
+    attempts: int = 3  # with other random numbers, twice the time budget and less margin, while nothing is found
     rollouts: float = inf  # after which the best plan so far is given
     deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
 
@@ -110,6 +110,7 @@ class Search:
     routes: Sequence[Route]
     problems: Sequence[tuple[Problem, Law]]
     effort: Effort
+    margin: float  # m, of clearance that is asked for at most
     seed: int
     attempt: int = 0
     threads: int = 1
@@ -156,7 +157,12 @@ class Search:
         swarms: list[Swarm] = []
         for task in tasks:
             problem, law = self.problems[task.team]
-            settings = replace(task.settings, top_speed=top_speed(self.scenario), weights=self.effort.weights)
+            settings = replace(
+                task.settings,
+                margin=min(task.settings.margin, self.margin),
+                top_speed=top_speed(self.scenario),
+                weights=self.effort.weights,
+            )
             for plan in pose_plans(
                 problem,
                 law,
