@@ -34,10 +34,12 @@ def along(guide: Guide, points: int) -> Schedule:
 
 
 def _switches(guide: Guide, points: int) -> Floats:
-    """Times (k,) at which the target changes: evenly spread, the nearest one moved to each cusp."""
+    """Times (k,) at which the target changes: evenly spread, the nearest one that is left moved to each cusp."""
     times = guide.duration * np.arange(1, points + 1) / (points + 1)
-    for cusp in guide.cusps:
-        times[np.argmin(np.abs(times - cusp))] = cusp
+    left = np.ones(points, dtype=np.bool_)
+    for cusp in guide.cusps[:points]:
+        nearest = np.argmin(np.where(left, np.abs(times - cusp), np.inf))
+        times[nearest], left[nearest] = cusp, False
     return np.sort(times)
 
 

@@ -43,7 +43,9 @@ class Effort:
     added: int = 2  # points that refinement adds
     nearness: float = 0.3  # noise of refinement's first schedules, as a share of the scouts'
     weights: Weights = Weights()  # of what counts beside time
-    attempts: int = 3  # with other random numbers, twice the time budget and less margin, while nothing is found
+    attempts: int = (
+        3  # with other random numbers, twice the time budget and less margin, while nothing is found
+    )
     rollouts: float = inf  # after which the best plan so far is given
     deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
 
