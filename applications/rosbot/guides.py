@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from applications.rosbot.curves import Curves
 from applications.rosbot.escapes import Escape, escapes, turning_time
@@ -28,6 +29,7 @@ class Guide:
     times: Floats  # (N,) s, at top speed
     senses: Floats  # (N,) +1 driven forwards, -1 backwards, 0 turned in place, up to here
     score: float  # s, the duration and what the way through obstacles counts for
+    arrival: float  # s, when it comes into the goal's tolerance
 
     @property
     def duration(self) -> float:
@@ -142,7 +144,17 @@ def _guide(scenario: Scenario, line: Sequence[Piece], score: float) -> Guide:
     for turn in 1 + np.flatnonzero(senses[1:] == 0.0):
         times[turn - 1] = turning_time(scenario, float(poses[turn, 2] - poses[turn - 1, 2]))
     times = np.cumsum(times)
-    return Guide(poses, np.concatenate([[0.0], times]), senses, score)
+    times = np.concatenate([[0.0], times])
+    return Guide(poses, times, senses, score, float(times[np.argmax(_within(scenario, poses))]))
+
+
+def _within(scenario: Scenario, poses: Floats) -> npt.NDArray[np.bool_]:
+    """Which poses (N, 3) are within the goal's tolerance, for certain the last one."""
+    error = poses - scenario.goal
+    near = np.hypot(error[:, 0], error[:, 1]) <= scenario.position_tolerance
+    near &= np.abs(np.remainder(error[:, 2] + np.pi, 2.0 * np.pi) - np.pi) <= scenario.heading_tolerance
+    near[-1] = True
+    return near
 
 
 def _turned(poses: Floats, sense: float) -> Floats:

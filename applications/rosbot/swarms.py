@@ -183,13 +183,15 @@ class Search:
         return swarms, budget, spent
 
     def _scouts(self) -> Iterator[Task]:
-        """For each law swarms along the guides of every way, every fourth particle anywhere."""
+        """For each law swarms along the guides of every way, every fourth particle anywhere.
+
+        Every third swarm begins with schedules that lead through the goal: one that aims at it arrives slowly.
+        """
         effort, teams = self.effort, len(self.problems)
-        exact = [schedules_along(way, self.points) if way else None for way in self.ways]
         ways = [
-            (way, each)
-            for way, each in zip(self.ways, exact, strict=True)
-            for _ in range(-(-effort.swarms // teams))
+            (way, schedules_along(way, self.points, through=number % 3 == 1) if way else None)
+            for way in self.ways
+            for number in range(-(-effort.swarms // teams))
         ]
         settings = replace(effort.scouts, points=self.points, swarms=len(ways))
         for team in range(teams):
