@@ -189,7 +189,7 @@ class Search:
         """
         effort, teams = self.effort, len(self.problems)
         ways = [
-            (way, schedules_along(way, self.points, through=number % 3 == 1) if way else None)
+            (way, schedules_along(way, self.points, through=number % 3 > 0) if way else None)
             for way in self.ways
             for number in range(-(-effort.swarms // teams))
         ]
