@@ -28,7 +28,7 @@ class Links:
     scores: tuple[
         Floats, Floats
     ]  # (b, N), (e, N) s: heads and tails; duration and what the obstacles count for
-    blocked: tuple[bool, bool]  # whether all of them are
+    blocked: tuple[bool, bool]  # whether the best of them is
 
     @classmethod
     def of(
@@ -60,7 +60,10 @@ class Links:
             leaves,
             arrives,
             (scores[:first].reshape(-1, count), scores[first:].reshape(-1, count)),
-            (bool(np.all(blockage[:first] > 0.0)), bool(np.all(blockage[first:] > 0.0))),
+            (
+                bool(blockage[:first][np.argmin(scores[:first])] > 0.0),
+                bool(blockage[first:][np.argmin(scores[first:])] > 0.0),
+            ),
         )
 
     def head(self, number: int) -> list[Piece]:

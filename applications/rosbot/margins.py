@@ -1,7 +1,5 @@
 """The clearance that a search asks for: what is wanted, or as much as the start and the shortest way leave."""
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from applications.rosbot.gaps import gaps_at, gaps_to_room
@@ -10,7 +8,7 @@ from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
 FINER = 4.0  # a margin that leaves too little is divided by this
-FINEST = 1e-5  # m; less is not tried for a shorter way
+FINEST = 1e-5  # m; for a shorter way no less is tried
 DETOUR = 1.01  # a way that is longer by less is not worth a smaller margin
 
 
@@ -22,20 +20,16 @@ def ways_within(scenario: Scenario, wanted: float) -> tuple[float, list[Route]]:
     """
     margin = min(wanted, 0.5 * start_gap(scenario))
     found = routes(scenario, margin=margin)
-    if found and not _has_passages(scenario, 2.0 * margin):
+    if found and (margin <= FINEST or not _has_passages(scenario, 2.0 * margin)):
         return margin, found
-    finer = [(each, routes(scenario, margin=each)) for each in _finer(margin)]
-    shortest = min((ways[0].length for _, ways in finer if ways), default=np.inf)
-    for each, ways in [(margin, found), *finer]:
-        if ways and ways[0].length <= DETOUR * shortest:
-            return each, ways
-    return margin, found
-
-
-def _finer(margin: float) -> Iterator[float]:
-    while margin > FINEST:
-        margin /= FINER
-        yield margin
+    shortest = min((way.length for way in routes(scenario, count=1, margin=FINEST)), default=np.inf)
+    finer, ways = margin, found
+    while finer > FINEST and not (ways and ways[0].length <= DETOUR * shortest):
+        finer = finer / FINER
+        ways = routes(scenario, margin=finer)
+    if not ways or finer == margin:
+        return margin, found
+    return 0.5 * finer, ways  # where the whole margin leaves a line, half of it leaves some room
 
 
 def start_gap(scenario: Scenario) -> float:
@@ -53,9 +47,10 @@ def start_gap(scenario: Scenario) -> float:
 
 
 def _has_passages(scenario: Scenario, width: float) -> bool:
-    """Whether two discs, or one and a bound, leave a way for the robot's center that is narrower than `width` (m)."""
+    """Whether two discs, or one and a bound, leave a way for the robot's center that is less than `width` (m) wide."""
     discs = scenario.discs
     apart = np.hypot(*(discs[:, None, :2] - discs[None, :, :2]).transpose(2, 0, 1))
     gaps: Floats = apart - discs[:, 2] - discs[:, None, 2]
     rooms = np.abs(discs[:, [0, 0, 1, 1]] - scenario.bounds) - discs[:, 2:]
-    return bool(np.any((gaps > 0.0) & (gaps < width)) or np.any((rooms > 0.0) & (rooms < width)))
+    narrow = [np.any((each > 2.0 * FINEST) & (each < width)) for each in (gaps, rooms)]
+    return bool(any(narrow))

@@ -1,4 +1,4 @@
-"""Scenarios of the kinds of the public ones, generated: other sizes, poses and limits, tight gaps, starts that touch."""
+"""Scenarios of the public ones' kinds, generated: other sizes, poses and limits, tight gaps, starts that touch."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
@@ -114,7 +114,9 @@ def _seed(rng: Rng, tight: bool) -> Drawn:
     goal = np.append(rng.uniform(1.5, 2.5, 2), rng.choice([0.0, 0.5, -0.5]) * np.pi)
     circles = np.column_stack([rng.uniform(-1.6, 2.6, (count, 2)), rng.uniform(0.25, 0.45, count)])
     circles[0, :2] = 0.45 * goal[:2] + rng.uniform(-0.2, 0.2, 2)
-    return Drawn(np.array([0.0, 0.0, rng.uniform(-np.pi, np.pi)]), goal, circles, np.array([-2.0, 3.0, -2.0, 3.0]))
+    return Drawn(
+        np.array([0.0, 0.0, rng.uniform(-np.pi, np.pi)]), goal, circles, np.array([-2.0, 3.0, -2.0, 3.0])
+    )
 
 
 def _empty(rng: Rng, tight: bool) -> Drawn:
@@ -140,7 +142,9 @@ def _wall(rng: Rng, tight: bool) -> Drawn:
     low, high = (middle - half - 0.15 - wall[0, 2], middle + half + 0.15 + wall[0, 2])
     # tight: within the bounds only just past both ends
     room = rng.uniform(0.005, 0.03) if tight else rng.uniform(0.5, 1.2)
-    return Drawn(_pose(rng, 0.0, 0.0), _pose(rng, 2.4, 0.2), wall, np.array([-1.0, 3.5, low - room, high + room]))
+    return Drawn(
+        _pose(rng, 0.0, 0.0), _pose(rng, 2.4, 0.2), wall, np.array([-1.0, 3.5, low - room, high + room])
+    )
 
 
 def _slalom(rng: Rng, tight: bool) -> Drawn:
@@ -163,7 +167,9 @@ def _utrap(rng: Rng, tight: bool) -> Drawn:
     back = 1.5
     corners = [back, -half], [back, half]
     rows = [_row(*corners, radius), *(_row(corner, [back - depth, corner[1]], radius) for corner in corners)]
-    start = np.array([back - depth + rng.uniform(-0.2, 0.4), rng.uniform(-0.05, 0.05), rng.uniform(-0.5, 0.5)])
+    start = np.array(
+        [back - depth + rng.uniform(-0.2, 0.4), rng.uniform(-0.05, 0.05), rng.uniform(-0.5, 0.5)]
+    )
     return Drawn(start, _pose(rng, 2.5, 0.1), np.vstack(rows), np.array([-1.5, 3.5, -2.0, 2.0]))
 
 
@@ -180,7 +186,9 @@ def _forest(count: int, least: float, most: float) -> Callable[[Rng, bool], Draw
 def _reversal(rng: Rng, tight: bool) -> Drawn:
     x = rng.uniform(-2.2, -1.2)
     circles = [[0.5 * x, rng.uniform(-0.15, 0.15), rng.uniform(0.15, 0.25)]]
-    circles += [[0.5 * x + rng.uniform(-0.4, 0.4), side * rng.uniform(0.75, 1.0), 0.3] for side in (1.0, -1.0)]
+    circles += [
+        [0.5 * x + rng.uniform(-0.4, 0.4), side * rng.uniform(0.75, 1.0), 0.3] for side in (1.0, -1.0)
+    ]
     if tight:
         circles += [[0.45, 0.0, 0.2], [x - 0.45, rng.uniform(-0.1, 0.1), 0.2]]
     goal = np.array([x, rng.uniform(-0.1, 0.1), rng.uniform(-0.2, 0.2)])
