@@ -9,7 +9,7 @@ from gpsynth.arrays import Floats
 
 FINER = 4.0  # a margin that leaves too little is divided by this
 FINEST = 1e-5  # m; for a shorter way no less is tried
-DETOUR = 1.01  # a way that is longer by less is not worth a smaller margin
+DETOUR = 1.05  # a way that is longer by less is not worth a smaller margin
 
 
 def ways_within(scenario: Scenario, wanted: float) -> tuple[float, list[Route]]:

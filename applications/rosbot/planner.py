@@ -13,7 +13,7 @@ from applications.rosbot.bounds import lower_bound
 from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.following import follow
 from applications.rosbot.guides import top_speed
-from applications.rosbot.margins import FINER, ways_within
+from applications.rosbot.margins import FINER, start_gap, ways_within
 from applications.rosbot.model import reached
 from applications.rosbot.others import tracks_of
 from applications.rosbot.reachability import Reachability, reachability
@@ -277,7 +277,8 @@ def _followed(
     if not len(previous.schedule.dwell) or law.plant.state_names != plant.state_names:
         return iter(())
     [(problem, law)] = _problems(report.scenario, [law])
-    return follow(problem, law, previous, elapsed, effort.followers, report.seed)
+    margin = min(effort.followers.margin, 0.5 * start_gap(report.scenario), max(previous.clearance, 0.0))
+    return follow(problem, law, previous, elapsed, replace(effort.followers, margin=margin), report.seed)
 
 
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:
