@@ -11,9 +11,7 @@ from gpsynth.schedule import Schedule, Schedules
 POSITION_NOISE, HEADING_NOISE, DWELL_NOISE = 0.1, 0.3, 0.15  # m, rad, share
 DWELL = (0.0, 4.0)  # s
 BEYOND = 0.3  # m: a point ahead of where the next takes over keeps the controls saturated
-LINGER = (
-    1.0  # s, that the last point of a schedule through the goal holds on: a robot is later than its guide
-)
+LINGER = 1.0  # s, that the last point of a schedule through the goal holds on: robots are later than guides
 
 
 def schedules_along(guides: Sequence[Guide], points: int, through: bool = False) -> Schedules:

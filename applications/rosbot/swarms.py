@@ -44,7 +44,7 @@ class Effort:
     nearness: float = 0.3  # noise of refinement's first schedules, as a share of the scouts'
     weights: Weights = Weights()  # of what counts beside time
     attempts: int = (
-        3  # with other random numbers, twice the time budget and less margin, while nothing is found
+        3  # while nothing is found, each with other random numbers, twice the time and less margin
     )
     rollouts: float = inf  # after which the best plan so far is given
     deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
@@ -185,16 +185,16 @@ class Search:
     def _scouts(self) -> Iterator[Task]:
         """For each law swarms along the guides of every way, every fourth particle anywhere.
 
-        Every third swarm begins with schedules that lead through the goal: one that aims at it arrives slowly.
+        Two of three swarms begin with schedules that lead through the goal: who aims at it arrives slowly.
         """
         effort, teams = self.effort, len(self.problems)
-        ways = [
-            (way, schedules_along(way, self.points, through=number % 3 > 0) if way else None)
-            for way in self.ways
-            for number in range(-(-effort.swarms // teams))
-        ]
-        settings = replace(effort.scouts, points=self.points, swarms=len(ways))
         for team in range(teams):
+            ways = [
+                (way, schedules_along(way, self.points, through=number % 3 > 0) if way else None)
+                for way in self.ways
+                for number in range(team, team + -(-effort.swarms // teams))
+            ]
+            settings = replace(effort.scouts, points=self.points, swarms=len(ways))
             rng = stream(self.seed, SCOUT, self.attempt, team, 0)
             initial = []
             for _, known in ways:
