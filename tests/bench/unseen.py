@@ -22,7 +22,7 @@ from gpsynth.law import Law
 from tests.bench.kinds import generated
 from tests.bench.planning import HEAD, Attempt, attempt, row, summary
 
-LONG = Effort(swarms=6, chased=12, refined=8)
+LONG = Effort(chased=8, refined=6)
 LONG_SEED = 1000
 
 

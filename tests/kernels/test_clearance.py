@@ -113,7 +113,7 @@ def test_bounds_are_obstacles_too() -> None:
 def test_what_is_touched_can_be_left(count: int, moving: float) -> None:
     """Where the distance grows from an end of the chord on, nothing is deducted for a bend; if not, all of it."""
     gap = 1e-9
-    for angle in np.linspace(-np.pi, np.pi, 33):
+    for angle in np.linspace(-np.pi, np.pi, 9):
         along = np.array([np.cos(angle), np.sin(angle)])
         circle = np.array([*((-0.4 - gap) * along), *(-moving * along), 0.3])
         far = np.array([[20.0 + k, 9.0, 0.0, 0.0, 0.1] for k in range(count - 1)]).reshape(-1, 5)
