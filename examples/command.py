@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 import gpsynth as gs
-from gpsynth.cli import run
+from gpsynth.command_line import run
 from gpsynth.export import write
 from gpsynth.files import make_folder
 from gpsynth.synthesis import FrontEntry

@@ -15,19 +15,21 @@ if TYPE_CHECKING:
     from gpsynth.encodings.tree import TreeEncoding
     from gpsynth.encodings.variational import VariationalEncoding
     from gpsynth.epochs import Epochs
-    from gpsynth.evaluate import Evaluator, Rollouts
+    from gpsynth.evaluate import Evaluator
     from gpsynth.islands import Islands
     from gpsynth.law import Law
     from gpsynth.objective import Objective
+    from gpsynth.obstacles import Obstacles
     from gpsynth.optimizers import CMAES, NSGA2, PSO, DifferentialEvolution, minimize
     from gpsynth.planning import Plan, PlanSettings, plan
     from gpsynth.plant import Plant
-    from gpsynth.problem import Obstacles, Problem
+    from gpsynth.problem import Problem
     from gpsynth.program import Program
     from gpsynth.refitting import refit
     from gpsynth.regression.entry import regress
     from gpsynth.regression.estimator import SymbolicRegressor
     from gpsynth.regression.result import RegressionResult
+    from gpsynth.rollouts import Rollouts
     from gpsynth.schedule import Schedule
     from gpsynth.seeds import stream
     from gpsynth.simulation import Trajectory, simulate
@@ -59,7 +61,7 @@ _HOME = {
     "Epochs": "epochs",
     "Evaluator": "evaluate",
     "Islands": "islands",
-    "Rollouts": "evaluate",
+    "Rollouts": "rollouts",
     "Law": "law",
     "Objective": "objective",
     "CMAES": "optimizers",
@@ -72,7 +74,7 @@ _HOME = {
     "PlanSettings": "planning",
     "plan": "planning",
     "Plant": "plant",
-    "Obstacles": "problem",
+    "Obstacles": "obstacles",
     "Problem": "problem",
     "Program": "program",
     "RegressionResult": "regression.result",

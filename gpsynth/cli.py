@@ -1,75 +1,26 @@
 """The command `gpsynth`: synthesize a law for the plant in a Python file, export, assess and describe laws."""
 
-import os
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import click
 
 from gpsynth import __version__
-from gpsynth.errors import FileError, GpsynthError
+from gpsynth.command_line import LOADING, law_argument, load_law, run, seed_option, status, threads_option
+from gpsynth.errors import FileError
 from gpsynth.files import write_json
+from gpsynth.run_files import begin, export_law, recorder, write_result
 
 if TYPE_CHECKING:
     from gpsynth.encodings.protocol import Encoding
-    from gpsynth.law import Law
-    from gpsynth.optimizers import Progress
     from gpsynth.problem import Problem
     from gpsynth.record import Run
-    from gpsynth.structure_search import SearchState
-    from gpsynth.synthesis import FrontEntry, SynthesisResult
 
 EncodingName = Literal["tree", "cartesian", "network-operator"]
 ENCODINGS: tuple[EncodingName, ...] = get_args(EncodingName)
 FORMATS = ("json", "text", "latex", "c", "python")
-FRONT_FORMAT = "gpsynth-front/1"
 TASK, TASK_FORMAT = "synthesis.json", "gpsynth-synthesis/1"
-LOADING = "loading; the first time, the kernels are compiled"
-Command = TypeVar("Command", bound=Callable[..., Any])
-MOST_SEED = 2**53 - 1  # the largest integer that every reader of JSON keeps
-INTERRUPTED = 130  # what a shell expects after Ctrl-C
-
-
-def seed_option(default: int = 1) -> Callable[[Command], Command]:
-    """The option --seed."""
-    return click.option(
-        "--seed",
-        type=click.IntRange(0, MOST_SEED),
-        default=default,
-        show_default=True,
-        help="Same seed, same result.",
-    )
-
-
-threads_option = click.option(
-    "--threads",
-    type=click.IntRange(min=1),
-    default=os.cpu_count() or 1,
-    show_default="all cores",
-    help="They change the time, not the result.",
-)
-law_argument = click.argument("law_file", metavar="LAW.json", type=click.Path(path_type=Path))
-
-
-def run(command: click.Command, arguments: Sequence[str] | None = None, *, name: str) -> int:
-    """Run a command line, by default the process's, and give its exit code.
-
-    What a user got wrong is one sentence on stderr and 2; Ctrl-C is 130.
-    """
-    try:
-        return int(command.main(args=arguments, prog_name=name, standalone_mode=False) or 0)
-    except click.ClickException as error:
-        error.show()
-        return error.exit_code
-    except GpsynthError as error:
-        click.echo(f"error: {_one_line(error)}", err=True)
-        return 2
-    except (click.Abort, KeyboardInterrupt):
-        click.echo("interrupted", err=True)
-        return INTERRUPTED
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -232,61 +183,6 @@ def _synthesize(folder: "Run", problem: "Problem", encoding: "Encoding[Any]", **
     click.echo(f"the best law, its exports and the front are in {folder.folder}")
 
 
-@contextmanager
-def status(text: str) -> Iterator[None]:
-    """A spinner with a text where stderr is a terminal, else nothing."""
-    from rich.console import Console
-
-    with Console(stderr=True).status(text):
-        yield
-
-
-def begin(folder: Path, seed: int, *, resume: bool = False) -> "Run":
-    """A run of this command line in a folder, or with `resume` the one that is there.
-
-    Raises FileError if the folder cannot be written to, or a new run would overwrite the checkpoint of an earlier one.
-    """
-    from gpsynth import record
-    from gpsynth.runs import FILE
-
-    if resume:
-        return record.Run(folder)
-    if (folder / FILE).exists():
-        raise FileError(f"{folder} holds the checkpoint of an earlier run: resume it, or name another folder")
-    return record.begin(folder, sys.argv, seed=seed, release=__version__)
-
-
-def load_law(path: Path) -> "Law":
-    """The law in a file; raises FileError or LawError."""
-    from gpsynth.law import Law
-
-    return Law.load(path)
-
-
-def export_law(law: "Law", folder: Path, *, name: str = "law", formats: Sequence[str] = ()) -> list[Path]:
-    """Write a law into `folder` in all formats, or in those given."""
-    from gpsynth import export as exports
-    from gpsynth.files import json_text, make_folder, write_text
-
-    if not formats:
-        return exports.write(law, folder, name)
-    source, header = exports.to_c(law, name)  # also the check of the name
-    contents = {
-        "json": {".json": json_text(law.to_dict())},
-        "text": {".txt": exports.to_text(law, name)},
-        "latex": {".tex": exports.to_document(law, name)},
-        "c": {".c": source, ".h": header},
-        "python": {".py": exports.to_python(law, name)},
-    }
-    place = make_folder(folder)
-    texts = {
-        place / f"{name}{end}": text for key in dict.fromkeys(formats) for end, text in contents[key].items()
-    }
-    for path, text in texts.items():
-        write_text(path, text)
-    return list(texts)
-
-
 def named_encoding(name: EncodingName, problem: "Problem") -> "Encoding[Any]":
     """An encoding for the problem's features and controls, with operations of general use."""
     from gpsynth.encodings.cartesian import CartesianEncoding
@@ -302,56 +198,3 @@ def named_encoding(name: EncodingName, problem: "Problem") -> "Encoding[Any]":
     if name == "cartesian":
         return CartesianEncoding(inputs, outputs, operations, space)
     return TreeEncoding(inputs, outputs, operations, space)
-
-
-def recorder(folder: "Run", problem: "Problem") -> Callable[["Progress[SearchState[Any]]"], None]:
-    """A callback of `synthesize` that logs each generation and keeps the best law so far in law.json."""
-    from gpsynth.law import Law
-
-    begun = False
-
-    def record(progress: "Progress[SearchState[Any]]") -> None:
-        nonlocal begun
-        if not begun:
-            folder.rewind("synthesis", progress.generation)
-            begun = True
-        evaluations, cost = progress.history[-1] if progress.history else (0, float("inf"))
-        folder.log(
-            "synthesis", generation=progress.generation, evaluations=progress.evaluations, best_cost=cost
-        )
-        if evaluations == progress.evaluations:
-            best = progress.state.front[-1]
-            Law(problem.plant, problem.features, best.program, best.values).save(folder.folder / "law.json")
-
-    return record
-
-
-def write_result(result: "SynthesisResult", folder: "Run") -> None:
-    """Write the best law in every form and the front; raises LawError if nothing was found.
-
-    Raises KeyboardInterrupt when that is done, if Ctrl-C has ended the search.
-    """
-    from gpsynth.runs import INTERRUPTED as CUT_SHORT
-
-    export_law(result.law, folder.folder)
-    front = [_described(entry) for entry in result.front]
-    write_json(folder.folder / "front.json", {"format": FRONT_FORMAT, "laws": front})
-    if result.reason == CUT_SHORT:
-        raise KeyboardInterrupt
-
-
-def _described(entry: "FrontEntry") -> dict[str, Any]:
-    return {
-        "complexity": entry.complexity,
-        "cost": entry.cost,
-        "reached": entry.reached,
-        "reached_at_least": entry.reached_at_least,
-        "median_time": entry.median_time if entry.reached > 0.0 else None,  # s
-        "worst_time": entry.worst_time if entry.reached > 0.0 else None,  # s
-        "law": entry.law.to_dict(),
-    }
-
-
-def _one_line(error: BaseException) -> str:
-    """What the error says, which may quote anything, without line breaks."""
-    return " ".join(filter(None, map(str.strip, str(error).splitlines())))

@@ -8,53 +8,23 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from gpsynth.arrays import Floats, Ints, frozen
+from gpsynth.arrays import Floats, Ints, frozen, numbers
 from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.kernels import rollout
-from gpsynth.kernels.buckets import NONE, buckets
-from gpsynth.kernels.layout import Buckets, Clock, Conditions, Lanes, Toll, World, readonly, sealed
-from gpsynth.kernels.pack import Extent, Frame, Instructions, Loop, frame, pack
-from gpsynth.kernels.tableaus import TABLEAUS
+from gpsynth.kernels.layout import Clock, Conditions, Lanes, Toll, World, readonly
+from gpsynth.kernels.pack import Frame, pack
 from gpsynth.law import Law
+from gpsynth.loop_arrays import clock_of, conditions_of, frame_of, instructions, world_of
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 from gpsynth.program import Program
-from gpsynth.tracks import NOBODY
+from gpsynth.rollouts import Paths, Rollouts, rollouts_of
 
 MOST_PERIODS = 10_000_000  # of one rollout
 ROUNDING = 1e-9  # of a sum of costs: what is above a bound by no more is not above it
 _NO_TRACE = np.empty((0, 0, 0))
 _NO_TOLL = Toll(frozen(np.empty(0)), *[0.0] * 8)
-
-
-@dataclass(frozen=True)
-class Paths:
-    """What N candidates passed through from S starts, in K control periods at most; NaN after the end of a rollout."""
-
-    t: Floats  # (K + 1,) s
-    x: Floats  # (N, S, K + 1, n)
-    u: Floats  # (N, S, K + 1, m) computed at each tick; the last one would be applied next
-    target: Floats  # (N, S, K + 1, n)
-
-
-@dataclass(frozen=True)
-class Rollouts:
-    """What became of N candidates from S starts."""
-
-    arrival: Floats  # (N, S) s, infinity where the goal was not reached
-    end: Floats  # (N, S) s, when the rollout ended
-    cost: Floats  # (N, S) running cost, infinity where the rollout diverged
-    clearance: Floats  # (N, S) m, smallest along the path, robot radius deducted; infinity without obstacles
-    exposure: Floats  # (N, S) s with less clearance than the margin
-    depth: Floats  # (N, S) m s, integral of what was missing of the margin
-    diverged: Floats  # (N, S) 1.0 where the rollout diverged
-    share: (
-        Floats  # (N, S) of the period before `arrival` that lies behind it, were the measure linear in time
-    )
-    terminal: Floats  # (N, S, q)
-    final: Floats  # (N, S, n)
-    paths: Paths | None = None  # where they were asked for
 
 
 class _Plans(NamedTuple):
@@ -182,7 +152,7 @@ class Evaluator:
         )
         trace = self._trace(candidates * starts, clock.periods) if paths else _NO_TRACE
         result = roll(self, program, lanes, clock, trace, plans.toll)
-        rollouts = _rollouts(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
+        rollouts = rollouts_of(result, (candidates, starts), len(self.problem.arrival.outputs) - 1)
         return replace(rollouts, paths=self._paths(trace, candidates)) if paths else rollouts
 
     def _trace(self, lanes: int, periods: int) -> Floats:
@@ -203,58 +173,22 @@ class Evaluator:
     @cached_property
     def world(self) -> World:
         """The problem's obstacles as the kernels want them."""
-        obstacles = self.problem.obstacles
-        if obstacles is None:
-            nowhere = np.empty(0, dtype=np.int32)
-            everywhere = np.array([-np.inf, np.inf, -np.inf, np.inf])
-            nothing, origin = np.empty((0, 0)), np.zeros(3)
-            return sealed(
-                World(
-                    *(nowhere, np.empty((0, 5)), 0, NONE, everywhere, float(self.margin)),
-                    *(np.empty((0, 3)), nothing, origin, NOBODY.places, NOBODY.radii, NOBODY.period),
-                )
-            )
-        states, body, field = self.problem.plant.state_names, obstacles.body, obstacles.field
-        tracks = obstacles.tracks or NOBODY
-        names = obstacles.position if np.any(body[:, :2]) else obstacles.position[:2]
-        return sealed(
-            World(
-                np.array([states.index(name) for name in names], dtype=np.int32),
-                *(*_sorted_circles(obstacles), obstacles.bounds, float(self.margin), body),
-                *((np.empty((0, 0)), np.zeros(3)) if field is None else (field.squares, field.grid)),
-                tracks.places,
-                tracks.radii,
-                tracks.period,
-            )
-        )
+        return world_of(self.problem, self.margin)
 
     @property
     def frame(self) -> Frame:
         """The closed loop but for the law: what does not change from candidate to candidate."""
-        return _frame(self.problem)
+        return frame_of(self.problem)
 
     @cached_property
     def conditions(self) -> Conditions:
         """The problem's draws as the kernels want them."""
-        problem, draws = self.problem, self.problem.draws
-        rest = np.clip(np.zeros(len(problem.plant.controls)), problem.plant.lower, problem.plant.upper)
-        nothing = np.empty(0, dtype=np.int32)
-        if draws is None:
-            return sealed(
-                Conditions(problem.plant_parameters, nothing, 0, rest, np.empty((0, 0, 0)), nothing)
-            )
-        delays = np.rint(draws.delay / problem.step).astype(np.int32)
-        substeps, longest = self.clock.substeps, int(delays.max(initial=0))
-        slots = -(-longest // substeps) + 1 if longest else 0
-        return sealed(Conditions(problem.plant_parameters, delays, slots, rest, draws.noise, draws.tables))
+        return conditions_of(self.problem)
 
     @cached_property
     def clock(self) -> Clock:
         """The problem's time grid, without an end."""
-        problem, tableau = self.problem, TABLEAUS[self.problem.method]
-        substeps = round(problem.period / problem.step)
-        flags = (problem.hold, problem.stop)
-        return Clock(tableau.b, tableau.c, problem.step, substeps, 0, *flags, 0.0, np.inf)
+        return clock_of(self.problem)
 
     def until(self, horizon: float, *, reach: float = 0.0, bound: float = np.inf) -> Clock:
         """The time grid up to the horizon (s); raises ProblemError unless that, and the reach, are sensible numbers."""
@@ -292,33 +226,6 @@ def roll(
         first = range(0, total, slice_size)
         list(pool.map(lambda begin: run(begin, min(begin + slice_size, total)), first))
     return result
-
-
-@lru_cache(maxsize=16)
-def _frame(problem: Problem) -> Frame:
-    given = Evaluator(problem).conditions
-    noisy, late = len(given.noise) > 0, given.slots > 0
-    features = problem.measured if noisy else problem.features
-    parts = (features, problem.plant.saturation, problem.rates, problem.arrival)
-    names = problem.plant.state_names
-    extent = Extent(
-        states=len(names),
-        plant=given.parameters.shape[1],
-        noise=noisy,
-        acting=len(given.rest) if late else 0,
-        slots=given.slots,
-    )
-    angles = np.array([names.index(angle) for angle in problem.plant.angles], dtype=np.int32)
-    return frame(Loop(*map(instructions, parts)), extent, angles)
-
-
-@lru_cache(maxsize=16)
-def _sorted_circles(obstacles: Obstacles) -> tuple[Floats, int, Buckets]:
-    """The circles with those that move first, the number of these, and the buckets of the others."""
-    moves = np.any(obstacles.circles[:, 2:4] != 0.0, axis=1)
-    movers = int(np.count_nonzero(moves))
-    circles = frozen(np.concatenate([obstacles.circles[moves], obstacles.circles[~moves]]))
-    return circles, movers, buckets(circles[movers:])
 
 
 @lru_cache(maxsize=16)
@@ -370,39 +277,9 @@ def _check_content(problem: Problem, law: Law) -> None:
     raise ProblemError(f"the law is for the plant {given!r}, which {other}; give the problem plant=law.plant")
 
 
-def numbers(what: str, values: npt.ArrayLike) -> Floats:
-    """The values as an array; raises ProblemError if they are not numbers."""
-    try:
-        return np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ProblemError(f"{what} must hold numbers in rows of equal length, got {values!r}") from None
-
-
 def _limits(plant: Plant) -> str:
     return ", ".join(f"[{low:g}, {high:g}]" for _, low, high in plant.controls.values())
 
 
 def _listed(names: tuple[str, ...]) -> str:
     return ", ".join(names) if names else "nothing"
-
-
-def instructions(program: Program) -> Instructions:
-    """A program as the kernels take it."""
-    return Instructions(program.code, program.constants, program.outputs)
-
-
-def _rollouts(result: Floats, shape: tuple[int, int], terminals: int) -> Rollouts:
-    table = result.reshape(*shape, result.shape[1])
-    first = rollout.TERMINAL
-    return Rollouts(
-        arrival=table[..., rollout.ARRIVAL],
-        end=table[..., rollout.END],
-        cost=table[..., rollout.COST],
-        clearance=table[..., rollout.CLEARANCE],
-        exposure=table[..., rollout.EXPOSURE],
-        depth=table[..., rollout.DEPTH],
-        diverged=table[..., rollout.DIVERGED],
-        share=table[..., rollout.SHARE],
-        terminal=table[..., first : first + terminals],
-        final=table[..., first + terminals :],
-    )

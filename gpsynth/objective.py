@@ -9,8 +9,9 @@ import numpy.typing as npt
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_function
 from gpsynth.errors import ProblemError
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.program import Program
+from gpsynth.rollouts import Rollouts
 
 Function = Callable[[Rollouts], npt.ArrayLike]
 
@@ -20,7 +21,7 @@ class Objective:
     """A cost of one's own: `function` maps the rollouts of N laws from S starts to costs (N, S), the less the better.
 
     It works on arrays, so one call serves many laws. With `paths` the rollouts hold what they pass through
-    (`gpsynth.evaluate.Paths`), which takes time and memory; without, it has arrival, end, cost, clearance and final
+    (`gpsynth.rollouts.Paths`), which takes time and memory; without, it has arrival, end, cost, clearance and final
     state. NaN, and whatever diverged, costs infinity.
     """
 

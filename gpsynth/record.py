@@ -27,17 +27,31 @@ class Run:
     folder: Path
     began: float = field(default_factory=time.monotonic)
 
-    def log(self, stage: str, *, generation: int, evaluations: int, best_cost: float) -> None:
+    @property
+    def elapsed(self) -> float:
+        """The time (s) since the run began, or this command went on with it."""
+        return time.monotonic() - self.began
+
+    def log(
+        self,
+        stage: str,
+        *,
+        generation: int,
+        evaluations: int,
+        best_cost: float,
+        elapsed: float | None = None,
+    ) -> None:
         """Append a line to the progress log; it is on its way to the disk when this returns.
 
-        A cost that is not finite is logged as null. Raises FileError if the log cannot be written.
+        `elapsed` (s) is when that was so, by default now. A cost that is not finite is logged as null. Raises FileError
+        if the log cannot be written.
         """
         entry = {
             "stage": stage,
             "generation": generation,
             "evaluations": evaluations,
             "best_cost": best_cost if math.isfinite(best_cost) else None,
-            "elapsed": round(time.monotonic() - self.began, 3),  # s
+            "elapsed": round(self.elapsed if elapsed is None else elapsed, 3),  # s
         }
         path = self.folder / PROGRESS
         try:

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gpsynth.arrays import Floats
+from gpsynth.arrays import Floats, numbers
 from gpsynth.checks import check_kind, check_whole
 from gpsynth.errors import ProblemError
-from gpsynth.evaluate import Evaluator, check_law, numbers, periods_of, roll
+from gpsynth.evaluate import Evaluator, check_law, periods_of, roll
 from gpsynth.kernels import rollout
 from gpsynth.kernels.layout import Lanes, sealed
 from gpsynth.law import Law

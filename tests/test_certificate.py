@@ -1,6 +1,7 @@
 """Clearance proved for the paths of any plant, against an adaptive integrator sampled between the ticks."""
 
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -12,9 +13,10 @@ from applications.rosbot.scenario import Scenario
 from gpsynth.distance_field import field_of_cells
 from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError
+from gpsynth.obstacles import Obstacles
 from gpsynth.planning import certified_clearance
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 from gpsynth.simulation import Trajectory
 
 PERIOD, PERIODS, FINE = 0.05, 60, 500
@@ -149,3 +151,40 @@ def test_a_body_and_a_distance_field_are_proved_clear_too():
         proved = certified_clearance(problem, trajectory)
         assert proved <= exact + 1e-6
         assert exact < 0.0 or exact - proved < 0.03
+
+
+def standing(pose, *, omega: float = 0.0, period: float = PERIOD, periods: int = 40, **obstacles) -> float:
+    """What is proved of a robot that stands somewhere, or turns there."""
+    plant = unicycle((-1.0, 1.0), (-20.0, 20.0))
+    x = np.tile(np.asarray(pose, dtype=np.float64), (periods + 1, 1))
+    x[:, 2] = np.remainder(x[:, 2] + omega * period * np.arange(periods + 1) + np.pi, 2.0 * np.pi) - np.pi
+    u = np.tile([0.0, omega], (periods, 1))
+    trajectory = Trajectory(plant, period * np.arange(periods + 1), x, u, x, np.inf, 0.0, np.inf)
+    problem = Problem(plant, np.zeros(3), np.ones(3), tolerance=0.1, period=period, horizon=9.0)
+    object.__setattr__(problem, "obstacles", Obstacles(**obstacles))  # also where the start is not free
+    return certified_clearance(problem, trajectory)
+
+
+def test_rounding_is_deducted_where_circles_come_from_afar():
+    rng = np.random.default_rng(12)
+    for _ in range(200):
+        angle, pose = rng.uniform(0.0, 2.0 * np.pi), np.append(rng.normal(size=2), 0.0)
+        velocity = 10.0 ** rng.uniform(2.0, 8.0) * np.array([np.cos(angle), np.sin(angle)])
+        center = pose[:2] - rng.uniform(0.2, 1.8) * velocity + rng.normal(size=2)
+        circles = [[*center, *velocity, 0.0]]
+        (a, b), (c, d) = map(Fraction, center), map(Fraction, velocity)
+        x, y = Fraction(pose[0]) - a, Fraction(pose[1]) - b
+        square = (x * d - y * c) ** 2 / (c * c + d * d)  # of the least distance, which is met on the way
+        proved = standing(pose, circles=circles)
+        assert proved < 0.0 or Fraction(proved) ** 2 <= square
+
+
+def test_whole_turns_within_a_period_are_seen():
+    body = {"footprint": [[0.5, 0.0, 0.05]], "position": ("x", "y", "theta")}
+    behind = {"circles": [[-0.5, 0.0, 0.0, 0.0, 0.1]]}
+    assert standing([0.0, 0.0, 0.0], **body, **behind) == pytest.approx(0.85)
+    assert standing([0.0, 0.0, 0.0], omega=4.0 * np.pi, period=0.5, **body, **behind) < -0.15
+
+
+def test_a_path_that_is_no_number_is_not_proved():
+    assert standing([np.nan, 0.0, 0.0], circles=[[3.0, 0.0, 0.0, 0.0, 0.1]]) == -np.inf

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import gpsynth
-from gpsynth.cli import ENCODINGS, FORMATS, cli, main, run
+from gpsynth.cli import ENCODINGS, FORMATS, cli, main
+from gpsynth.command_line import run
 from gpsynth.law import Law
 from gpsynth.record import read_progress
 

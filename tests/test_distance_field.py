@@ -1,5 +1,7 @@
 """Distances from occupied cells: exact at nodes, never too great between them."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -64,6 +66,35 @@ def test_along_a_line_no_point_is_nearer():
     for share in np.linspace(0.0, 1.0, 21):
         assert np.all(bound <= distances(heads + share * (tails - heads), cells) + 1e-9)
     assert np.median(field.at(heads) - bound) < 0.02
+
+
+# corner (m), spacing (m), nodes across; how far from the thin wall and from the grid places are taken (m)
+SCALES = [(0.0, 0.05, 40, 1e-9, 0.0), (-3.3, 0.7, 40, 1e-6, 0.0), (1e4, 0.01, 30, 1e-7, 0.0)]
+SCALES += [(-7e3, 1e-3, 200, 1e-12, 0.0), (0.1, 13.0, 900, 1e-4, 0.0), (5e6, 0.05, 9, 1e-8, 3e3)]
+
+
+@pytest.mark.parametrize(("corner", "spacing", "across", "near", "beyond"), SCALES)
+def test_rounding_lets_no_bound_rise_above_the_distance(corner, spacing, across, near, beyond):
+    rng = np.random.default_rng(11)
+    low, width = Fraction(corner), Fraction(spacing)
+    for _ in range(8):
+        wall = float(low + width * Fraction(rng.uniform(0.2, 0.8)) * (across - 1))  # x of a thin wall
+        squares = [float((low + width * j - Fraction(wall)) ** 2) for j in range(across)]
+        field = DistanceField(np.tile(squares, (3, 1)), (corner, corner), spacing)
+        # on a row of nodes nothing but rounding is missing, and of a line to the wall nothing at its end
+        row = np.full(200, corner + spacing * float(across > 100))
+        x = wall + near * rng.normal(size=200) * 10.0 ** rng.uniform(-8.0, 0.0, 200)
+        x[150:] = wall + (beyond + 3.0 * spacing) * rng.normal(size=50)
+        points = np.column_stack([x, row])
+        back = np.column_stack([np.where(x > wall, 1.0, -1.0) * 10.0 ** rng.uniform(-9.0, 1.0, 200), 0.0 * x])
+        for found in (
+            field.proved_along(points, points),
+            field.proved_along(points, points + spacing * back),
+        ):
+            distances = [abs(Fraction(each) - Fraction(wall)) for each in x.tolist()]
+            assert all(
+                Fraction(bound) <= exact for bound, exact in zip(found.tolist(), distances, strict=True)
+            )
 
 
 def test_outside_of_the_grid_a_bound_holds_too():

@@ -10,8 +10,9 @@ from gpsynth.arrays import Floats
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
+from gpsynth.obstacles import Obstacles
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 from gpsynth.program import Program
 from gpsynth.schedule import Schedule
 from gpsynth.simulation import simulate

@@ -6,6 +6,7 @@ import pytest
 import gpsynth as gs
 from gpsynth import export
 from gpsynth.pareto_search import ParetoSearch
+from gpsynth.planning import certified_clearance
 
 PLANT = gs.Plant(
     lambda x, u, p: (x.v, u.u / p.mass),
@@ -17,6 +18,7 @@ PROBLEM = gs.Problem(PLANT, [[1.0, 0.0]], [0.0, 0.0], tolerance=0.1, horizon=2.0
 ENCODING = gs.TreeEncoding(PROBLEM.features.names, ("u",), ("add", "mul"), gs.ParameterSpace(2))
 PROGRAM = gs.trace(lambda f: (f.error_x + 2.0 * f.error_v,), [("f", PROBLEM.features.names)], ("u",))
 LAW = gs.Law(PLANT, PROBLEM.features, PROGRAM, np.empty(0))
+PATH = gs.simulate(PROBLEM, LAW)
 RNG = gs.stream(1)
 X = np.linspace(1.0, 2.0, 8).reshape(4, 2)
 BOX = ([0.0], [1.0])
@@ -29,6 +31,10 @@ def synthesize(**settings):
 
 def tradeoffs(objectives=COSTS, **settings):
     return gs.synthesize_tradeoffs(PROBLEM, ENCODING, objectives, **{"budget": 300, **settings})
+
+
+def plan(**settings):
+    return gs.plan(PROBLEM, LAW, gs.PlanSettings(points=2, particles=16, iterations=1, rounds=1), **settings)
 
 
 def regress(**settings):
@@ -66,6 +72,17 @@ MISTAKES = {
     "plan: swapped": (lambda: gs.plan(LAW, PROBLEM), "problem must be a Problem, got a Law"),
     "plan: seed": (lambda: gs.plan(PROBLEM, LAW, seed=1.5), "seed must be an integer of at least 0, not 1.5"),
     "plan: settings": (lambda: gs.plan(PROBLEM, LAW, 5), "settings must be a PlanSettings, got 5"),
+    "plan: initial": (lambda: plan(initial=3), "the schedules to begin with, must be a list or a tuple or a Schedules"),
+    "plan: region": (lambda: plan(region=([0, 0],)), "highest points, has shape (1, 2); expected (2, 2)"),
+    "plan: a region's states": (lambda: plan(region=([0], [1])), "has shape (2, 1); expected (2, 2)"),
+    "plan: no budget": (lambda: plan(budget=0), "budget must be a finite time above 0 s, not 0"),
+    "plan: a NaN": (lambda: plan(budget=np.nan), "budget must be a finite time above 0 s, not nan"),
+    "plan: a text": (lambda: plan(budget="1"), "budget must be a number, got '1'"),
+    "plan: path": (lambda: plan(path=3), "path must be a tuple, got 3"),
+    "plan: threads": (lambda: plan(threads=0), "threads must be an integer of at least 1, not 0"),
+    "plan: callback": (lambda: plan(callback=3), "callback must be a function or None, got 3"),
+    "proof: swapped": (lambda: certified_clearance(PATH, PROBLEM), "problem must be a Problem, got a Trajectory"),
+    "proof: row": (lambda: certified_clearance(PROBLEM, PATH, row=1), "row is 1; the problem has 1 rows"),
     "plan: points": (lambda: gs.PlanSettings(points=1.5), "points of a plan must be an integer of at least 1"),
     "plan: dwell": (lambda: gs.PlanSettings(dwell=3.0), "dwell, (shortest, longest) in s, has shape ()"),
     "plan: optimizer": (lambda: gs.PlanSettings(optimizer="pso"), "optimizer of a plan must be one of ('clerc',"),
@@ -93,6 +110,8 @@ MISTAKES = {
     "regress: the same name": (lambda: regress(names=("a", "a")), "need different names; a is there twice"),
     "regress: target's name": (lambda: regress(names=("y", "a")), "need different names; y is there twice"),
     "regress: functions": (lambda: regress(functions="add"), "functions must be names in a tuple, got 'add'"),
+    "regress: all inputs": (lambda: regress(use_all_inputs=1), "use_all_inputs must be a bool, got 1"),
+    "regress: constant": (lambda: gs.regress(X, [1] * 4, use_all_inputs=True), "the target is constant"),
     "regress: complex": (lambda: gs.regress(X * 1j, X[:, 0]), "inputs must hold numbers"),
     "law: order": (lambda: gs.Law(PROBLEM, PROBLEM.features, PROGRAM, []), "plant of a law must be a Plant, got"),
     "law: parameters": (lambda: gs.Law(PLANT, PROBLEM.features, PROGRAM, "a"), "parameters of a law are numbers"),

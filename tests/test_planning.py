@@ -8,15 +8,17 @@ import pytest
 
 from gpsynth.draws import Draws
 from gpsynth.errors import ProblemError
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
+from gpsynth.obstacles import Obstacles
 from gpsynth.optimizers import PSO, DifferentialEvolution, minimize
-from gpsynth.planning import Objective, PlanSettings, plan
+from gpsynth.planning import Objective, PlanSettings, plan, plans
 from gpsynth.planning.literal import plan_literally
-from gpsynth.planning.rounds import rescored
+from gpsynth.planning.rounds import rescored, vectors_of
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
-from gpsynth.schedule import Schedule
+from gpsynth.problem import Problem
+from gpsynth.rollouts import Rollouts
+from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import simulate
 from gpsynth.tracing import trace
 
@@ -47,6 +49,25 @@ def _setting() -> tuple[Problem, Law]:
 
 def objective(setting: tuple[Problem, Law], settings: PlanSettings, budget: float) -> Objective:
     return Objective(Evaluator(setting[0], margin=settings.margin), setting[1], settings, budget)
+
+
+def test_a_round_that_is_broken_off_gives_the_best_of_what_was_tried(setting):
+    settings = replace(SMALL, particles=300, rounds=1)
+    rng = np.random.default_rng(1)
+    tried = Schedules(rng.uniform(-1.0, 5.0, (300, 2, 2)), rng.uniform(0.0, 2.0, (300, 2)))
+    costs = objective(setting, settings, 12.0)(vectors_of(tried, settings))
+    for asked, evaluations in enumerate((0, 128, 256, 300)):
+        answers = iter([False] * asked + [True] * 9)
+        [found] = plans(*setting, settings, initial=tried, budget=12.0, stop=lambda: next(answers))  # noqa: B023
+        assert found.evaluations == evaluations
+        assert found.cost == (costs[:evaluations].min() if evaluations else costs[0])
+
+
+def test_a_search_that_is_never_stopped_is_the_same(setting):
+    free = list(plans(*setting, SMALL, seed=1))
+    asked = list(plans(*setting, SMALL, seed=1, stop=lambda: False))
+    assert [each.cost for each in free] == [each.cost for each in asked]
+    assert np.array_equal(free[-1].schedule.points, asked[-1].schedule.points)
 
 
 def test_a_plan_reaches_the_goal_around_the_obstacle(setting):

@@ -8,8 +8,9 @@ import pytest
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
+from gpsynth.obstacles import Obstacles
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule
 from gpsynth.simulation import simulate
 from gpsynth.tracing import trace

@@ -6,9 +6,10 @@ import pytest
 from applications.rosbot.model import unicycle
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator
+from gpsynth.obstacles import Obstacles
 from gpsynth.planning import Weights, certified_clearance
 from gpsynth.planning.weights import weighted
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 from gpsynth.simulation import Trajectory
 from gpsynth.tracing import trace
 from gpsynth.tracks import Tracks

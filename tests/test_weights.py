@@ -11,10 +11,11 @@ from applications.rosbot.polar_law import SATURATING, Gains, polar_law
 from applications.rosbot.scenario import Scenario
 from gpsynth.errors import ProblemError
 from gpsynth.law import Law
+from gpsynth.obstacles import Obstacles
 from gpsynth.planning import PlanSettings, Weights, plan
 from gpsynth.planning.weights import weighted
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 from gpsynth.tracing import trace
 
 SMALL = PlanSettings(points=3, particles=32, iterations=10, rounds=5)

@@ -8,10 +8,11 @@ import pytest
 from gpsynth.builder import Builder
 from gpsynth.errors import OptimizerError, ProblemError
 from gpsynth.law import Law
+from gpsynth.obstacles import Obstacles
 from gpsynth.planning import PlanSettings
 from gpsynth.planning.worth import Task, Worth, refit_to_plans
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 
 CART = Plant(
     lambda x, u: (u.v, 0.0 * u.v),

@@ -8,23 +8,14 @@ from types import MappingProxyType
 
 import click
 
-from gpsynth.cli import (
-    ENCODINGS,
-    LOADING,
-    EncodingName,
-    begin,
-    export,
-    load_law,
-    run,
-    seed_option,
-    status,
-    threads_option,
-)
+from gpsynth.cli import ENCODINGS, EncodingName, export
+from gpsynth.command_line import LOADING, run, seed_option, status, threads_option
+from gpsynth.run_files import begin
 
 PATH = click.Path(path_type=Path)
 SEED = 3  # of the law that comes along
 EXIT_CODES = MappingProxyType({"planned": 0, "unreachable": 3, "not_found": 4})
-NOT_THERE = 4  # exit code of a drive that did not come to its goal without a collision
+DRIVE_EXIT_CODES = MappingProxyType({"arrived": 0, "unreachable": 3, "late": 4, "collision": 4})
 resume_option = click.option(
     "--resume", is_flag=True, help="Go on with the synthesis in the run folder, other options being the same."
 )
@@ -119,8 +110,9 @@ def plan(
     """
     with status(LOADING):
         from applications.rosbot.planner import Effort
+        from applications.rosbot.saved import read_plan
         from applications.rosbot.scenario_file import read_scenario
-        from applications.rosbot.show import print_plans, read_plan
+        from applications.rosbot.show import print_plans
         from applications.rosbot.stabilizer import default_law
         from applications.rosbot.stages import load_steering_law, run_plan
         from applications.rosbot.through import check_via
@@ -157,20 +149,24 @@ def drive(
     """Drive a simulated robot and plan on at 10 Hz.
 
     What rests is known from the beginning, what moves is seen when it is near. Exit code 0 if the goal is reached
-    without a collision, 4 if not, 2 if the input is wrong.
+    without a collision, 3 if what rests is proved to leave no way to it, 4 if it is not reached otherwise, 2 if the
+    input is wrong.
     """
     with status(LOADING):
-        from applications.rosbot.loop import drive_scenario
+        from applications.rosbot.drive_file import status_of
+        from applications.rosbot.loop import check_drivable, drive_scenario
         from applications.rosbot.replanning import Replanning
+        from applications.rosbot.saved import read_drive
         from applications.rosbot.scenario_file import read_scenario
         from applications.rosbot.sensing import Sensor
+        from applications.rosbot.show import drive_line
         from applications.rosbot.simulated_robot import UNCERTAIN, Flaws
         from applications.rosbot.stabilizer import default_law
         from applications.rosbot.stages import load_steering_law, write_drive_run
     scenario = read_scenario(scenario_file)
     law = load_steering_law(law_file) if law_file else default_law()
     sensor, settings = Sensor(reach), Replanning.keeping(margin)
-    sensor.check(scenario)
+    check_drivable(scenario, sensor)
     run_folder = begin(out, seed)
     with status(f"driving {scenario.name}"):
         driven = drive_scenario(
@@ -181,8 +177,9 @@ def drive(
             settings=settings,
             seed=seed,
         )
-    click.echo(write_drive_run(run_folder, scenario_file, driven, law, sensor, seed))
-    return 0 if driven.arrives and driven.is_safe else NOT_THERE
+    path = write_drive_run(run_folder, scenario_file, driven, law, sensor, seed)
+    click.echo(drive_line(scenario.name, read_drive(path)))
+    return DRIVE_EXIT_CODES[status_of(driven)]
 
 
 @cli.command()
@@ -200,6 +197,8 @@ def fleet(fleet_file: Path, out: Path, law_file: Path | None, seed: int, threads
     with status(LOADING):
         from applications.rosbot.fleet import check_fleet, plan_fleet
         from applications.rosbot.fleet_file import read_fleet
+        from applications.rosbot.saved import read_fleet_plan
+        from applications.rosbot.show import fleet_line
         from applications.rosbot.stabilizer import default_law
         from applications.rosbot.stages import load_steering_law, write_fleet_run
     robots = read_fleet(fleet_file)
@@ -208,31 +207,24 @@ def fleet(fleet_file: Path, out: Path, law_file: Path | None, seed: int, threads
     run_folder = begin(out, seed)
     with status(f"planning {robots.name}"):
         report = plan_fleet(robots.scenarios, [law], seed=seed, threads=threads)
-    click.echo(f"{robots.name}: {write_fleet_run(run_folder, fleet_file, report)}")
+    path = write_fleet_run(run_folder, fleet_file, report)
+    click.echo(fleet_line(robots.name, read_fleet_plan(path)))
     if report.ended == "interrupted":
         raise KeyboardInterrupt
     return EXIT_CODES[report.status]
 
 
 @cli.command()
-@click.argument("place", metavar="RUN_OR_PLAN", type=PATH)
+@click.argument("place", metavar="RUN_OR_FILE", type=PATH)
 def show(place: Path) -> None:
-    """Print what a run or plan.json holds.
+    """Print what a run folder holds.
 
-    RUN_OR_PLAN is a run folder or a plan.json. The pictures of its plans are drawn anew.
+    RUN_OR_FILE is a run folder, or a law.json, plan.json, drive.json or fleet.json. The pictures of plans, drives and
+    fleets are drawn anew.
     """
-    from applications.rosbot.show import name_of, plan_files, print_plans, read_plan, redraw
-    from gpsynth.errors import FileError
+    from applications.rosbot.show import show_place
 
-    files, law_file = plan_files(place), place / "law.json"
-    if not files and not law_file.exists():
-        raise FileError(f"{place} holds neither a plan.json nor a law.json")
-    if law_file.exists():
-        click.echo("\n".join(load_law(law_file).formulas()))
-    if files:
-        print_plans([(name_of(path), read_plan(path)) for path in files])
-    for picture in filter(None, map(redraw, files)):
-        click.echo(f"drawn: {picture}")
+    show_place(place)
 
 
 if __name__ == "__main__":

@@ -3,25 +3,23 @@
 What is proved: a robot that obeys model (12) exactly, starts at the scenario's start and gets the controls for their
 durations keeps at least this distance, up to the arrival. Everything that rounding can do is deducted (`arcs`).
 Distances to circles at rest are those of arcs in closed form. A circle with a velocity sees arcs added to a straight
-line, whose distance has no closed form: the chord of the relative motion is taken, less the bend of the arc, and pieces
-that may be nearest are halved until the bend costs less than TIGHT.
+line, whose distance has no closed form (`approaches`).
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, advance, arcs, from_origin
+from applications.rosbot.approaches import Indices, Parts, least_gap
+from applications.rosbot.arcs import ROUNDING, STANDING, Arcs, arcs
 from applications.rosbot.chords import Chords, chords_of, gaps_of_circles, gaps_of_room
+from applications.rosbot.controls import held
 from applications.rosbot.encounters import least_distance
-from applications.rosbot.lags import ERROR, nominal_path
+from applications.rosbot.lag_errors import errors
+from applications.rosbot.lags import lagging_path, nominal_speeds
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
-Indices = npt.NDArray[np.intp]
-
-TIGHT = 1e-7  # m; what the bound may lose where circles move
 TOUCHING = 1e-9  # m; a path that touches an obstacle is clear, though rounding is deducted
 
 
@@ -57,10 +55,9 @@ def certify(
     """The certificate of (v, omega) pairs (n, 2), each held for `period` seconds (one number, or one per pair).
 
     `until` (s) is the arrival, after which the robot stands. Other robots are kept clear of even then, obstacles up to
-    the arrival alone.
+    the arrival alone. Raises ScenarioError if these are no controls.
     """
-    controls = np.asarray(controls, dtype=np.float64).reshape(-1, 2)
-    durations = np.broadcast_to(np.asarray(period, dtype=np.float64), len(controls))
+    controls, durations = held(controls, period)
     begins = np.cumsum(durations) - durations
     kept = np.clip(until - begins, 0.0, durations)
     lags = scenario.model == "dynamic_unicycle"
@@ -82,10 +79,12 @@ def certify(
 
 
 def _lagging(scenario: Scenario, controls: Floats, durations: Floats) -> Arcs:
-    """The path of the nominal robot with lags, in pieces so short that ERROR covers what makes them no arcs."""
-    path = nominal_path(scenario.start, controls, durations)
+    """The path of the nominal robot with lags, in pieces that are nearly arcs."""
+    speeds = nominal_speeds(controls, durations, scenario.speeds)
+    path = lagging_path(scenario.start, durations, *speeds)
+    error, turn_error = errors(path, durations, *speeds)
     v, omega = (np.maximum(np.abs(each[:-1]), np.abs(each[1:])) for each in (path.v, path.omega))
-    return Arcs(path.times, path.poses, v, omega, np.diff(path.times), ERROR, ERROR)
+    return Arcs(path.times, path.poses, v, omega, np.diff(path.times), error, turn_error)
 
 
 def _in_room(chords: Chords, scenario: Scenario) -> _Nearest:
@@ -144,24 +143,20 @@ def _moving(path: Arcs, scenario: Scenario, which: Indices) -> _Nearest:
     speed = np.hypot(circles[:, 2], circles[:, 3])
     size = np.abs(path.poses).max() + np.abs(circles[:, :2]).sum(axis=1) + speed * end + scenario.radius
     lost = path.error + (ROUNDING * (256.0 + len(path.steps)) + path.turn_error) * (size + circles[:, 4])
-    radii, times = circles[:, 4] + scenario.radius, path.times[:-1, np.newaxis]
+    times = path.times[:-1, np.newaxis]
     place = path.poses[:-1, np.newaxis, :2] - circles[:, :2] - circles[:, 2:4] * times[..., np.newaxis]
-    rows = _Rows(piece, number, place.reshape(-1, 2), path.poses[piece, 2], path.steps[piece])
-    best, most = _Nearest(), np.inf
-    while len(rows.piece):
-        v, omega, wind = path.v[rows.piece], path.omega[rows.piece], circles[rows.number, 2:4]
-        bend = (0.125 + ROUNDING) * np.abs(v * omega) * rows.steps**2
-        motion = advance(rows.heading, v, omega, rows.steps) - wind * rows.steps[:, np.newaxis]
-        gap = from_origin(rows.place, motion) - radii[rows.number]
-        lower, most = gap - bend - lost[rows.number], min(most, float((gap + bend).min()))
-        halved = (lower < most) & (bend > 0.5 * TIGHT)
-        settled = np.where(halved, np.inf, lower)
-        row = int(np.argmin(settled))
-        if settled[row] < best.gap:
-            time = float(path.times[rows.piece[row]])
-            best = _Nearest(float(settled[row]), int(which[rows.number[row]]), time)
-        rows = rows.halved(halved, v, omega, wind)
-    return best
+    parts = Parts(
+        pair=number,
+        times=path.times[piece],
+        place=place.reshape(-1, 2),
+        headings=path.poses[np.newaxis, piece, 2],
+        v=path.v[np.newaxis, piece],
+        omega=path.omega[np.newaxis, piece],
+        drift=-circles[number, 2:4],
+        steps=path.steps[piece],
+    )
+    gap, nearest, time = least_gap(parts, circles[:, 4] + scenario.radius, lost)
+    return _Nearest(gap, int(which[nearest]), time) if len(which) else _Nearest()
 
 
 def _among(path: Arcs, scenario: Scenario) -> _Nearest:
@@ -172,30 +167,6 @@ def _among(path: Arcs, scenario: Scenario) -> _Nearest:
         gap = distance - scenario.radius - other.radius
         nearest = min(nearest, _Nearest(gap, None, time, number), key=lambda each: each.gap)
     return nearest
-
-
-@dataclass(frozen=True, eq=False)
-class _Rows:
-    """Pairs of a part of a piece and a circle, r of them."""
-
-    piece: Indices  # (r,)
-    number: Indices  # (r,) of the circle
-    place: Floats  # (r, 2) where the part begins, seen from the circle's center
-    heading: Floats  # (r,) there
-    steps: Floats  # (r,) s, how long it lasts
-
-    def halved(self, which: npt.NDArray[np.bool_], v: Floats, omega: Floats, wind: Floats) -> "_Rows":
-        """Both halves of some of them."""
-        piece, number, heading = self.piece[which], self.number[which], self.heading[which]
-        v, omega, half = v[which], omega[which], 0.5 * self.steps[which]
-        later = self.place[which] + advance(heading, v, omega, half) - wind[which] * half[:, np.newaxis]
-        return _Rows(
-            np.tile(piece, 2),
-            np.tile(number, 2),
-            np.concatenate([self.place[which], later]),
-            np.concatenate([heading, heading + omega * half]),
-            np.tile(half, 2),
-        )
 
 
 def _room(path: Arcs, bounds: Floats) -> float:

@@ -13,7 +13,6 @@ from applications.rosbot.arcs import ROUNDING, Arcs
 from applications.rosbot.footprint import placed
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
-from gpsynth.distance_field import rooted
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +63,6 @@ def gaps_of_room(chords: Chords, scenario: Scenario) -> Floats:
     """Lower bounds (p,) on the distance from the room's distance field; infinity without a room."""
     if scenario.field is None:
         return np.full(len(chords.times) - 1, np.inf)
-    distances = scenario.field.along(chords.heads, chords.tails)
-    places = np.abs(chords.heads - scenario.field.corner).max(axis=-1)
-    rounding = 64.0 * ROUNDING * (distances**2 + places**2)  # of the square, however small its root
-    distances = rooted(distances * np.abs(distances) - rounding)
+    distances = scenario.field.proved_along(chords.heads, chords.tails)
     gaps: Floats = np.min(distances - chords.radii - chords.lost, axis=1)
     return gaps

@@ -8,6 +8,7 @@ from applications.rosbot.guides import direct_guides, top_speed
 from applications.rosbot.routes import Route, routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import along
+from applications.rosbot.wayfinder import Part
 from gpsynth.arrays import Floats
 from gpsynth.schedule import Schedule, Schedules
 
@@ -26,20 +27,21 @@ class Course:
     """A schedule to follow, what it promises, and others like it that are good."""
 
     schedule: Schedule
+    goal: Floats  # (3,), the target after the last point
     arrival_time: float  # s from its beginning; infinity if the goal is not reached
     clearance: float  # m, smallest on the way; infinity without obstacles
     swarm: Schedules
 
     @classmethod
-    def of(cls, schedule: Schedule, points: int) -> "Course":
-        """A schedule of which nothing is known yet, with so many points at least."""
+    def of(cls, schedule: Schedule, goal: Floats, points: int) -> "Course":
+        """A schedule to a goal (3,) of which nothing is known yet, with so many points at least."""
         divided = schedule.split(points)
-        return cls(divided, np.inf, -np.inf, Schedules.of([divided]))
+        return cls(divided, goal, np.inf, -np.inf, Schedules.of([divided]))
 
-    def target(self, time: float, goal: Floats) -> Floats:
+    def target(self, time: float) -> Floats:
         """The equilibrium point (3,) at a time (s) after the beginning."""
         due = int(np.sum(time >= self.schedule.ends - INSTANT))
-        return self.schedule.points[due] if due < len(self.schedule.dwell) else goal
+        return self.schedule.points[due] if due < len(self.schedule.dwell) else self.goal
 
     def remainder(self, elapsed: float) -> Schedules:
         """What is left after so many seconds of the schedule, which comes first, and of the others."""
@@ -68,18 +70,19 @@ def alternatives(course: Schedule, pose: Floats, goal: Floats) -> Schedules:
     return Schedules(np.array([places for places, _ in found]), np.array([times for _, times in found]))
 
 
-def anew(scene: Scenario, points: int, margin: float) -> Schedules:
+def anew(scene: Scenario, points: int, margin: float, part: Part | None = None) -> Schedules:
     """Courses that owe nothing to an earlier one: to stand still, curves to the goal, and ways around obstacles.
 
-    Obstacles count where they are at time 0, and routes keep `margin` (m) besides the robot's radius.
+    Obstacles count where they are at time 0, and routes keep `margin` (m) besides the robot's radius. In a `part` of a
+    room they do not leave it.
     """
     found = [standing(scene.start).split(points)]
     found += [along(guide, points) for guide in direct_guides(scene)[:GUIDES]]
-    ways = routes(scene, count=ROUTES, margin=margin)
-    return Schedules.of(found + [_along_route(route, points, top_speed(scene)) for route in ways])
+    ways = part.routes(scene, ROUTES, margin) if part else routes(scene, count=ROUTES, margin=margin)
+    return Schedules.of(found + [along_route(route, points, top_speed(scene)) for route in ways])
 
 
-def _along_route(route: Route, points: int, speed: float) -> Schedule:
+def along_route(route: Route, points: int, speed: float) -> Schedule:
     """Points at equal distances along a route, taken at a speed in m/s."""
     ways = route.length * np.arange(1, points + 1) / (points + 1)
     return Schedule(route.poses(ways), np.full(points, route.length / (points + 1) / speed))

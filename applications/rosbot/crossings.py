@@ -26,17 +26,17 @@ def crossing(number: int, *, seed: int = 0) -> Scenario:
     count = int(rng.integers(MOVERS[0], MOVERS[1] + 1))
     circles: list[Floats] = []
     while len(circles) < count:
-        circle = _mover(start, goal, rng)
+        share = rng.uniform(0.1, 0.95)
+        meeting = start[:2] + share * (goal - start)[:2]
+        when = max(SOONEST, share * float(np.hypot(*(goal - start)[:2])) / PACE + JITTER * rng.normal())
+        circle = mover(meeting, when, rng)
         if np.hypot(*(circle[:2] - start[:2])) - circle[4] - Scenario.radius >= ROOM:
             circles.append(circle)
     return Scenario(start, goal, bounds=BOUNDS, circles=np.array(circles), name=f"crossing_{number:03}")
 
 
-def _mover(start: Floats, goal: Floats, rng: np.random.Generator) -> Floats:
-    """A disc (x, y, vx, vy, radius) that comes to the straight way about when the robot does."""
-    share = rng.uniform(0.1, 0.95)
-    meeting = start[:2] + share * (goal - start)[:2]
-    when = max(SOONEST, share * float(np.hypot(*(goal - start)[:2])) / PACE + JITTER * rng.normal())
+def mover(place: Floats, when: float, rng: np.random.Generator) -> Floats:
+    """A disc (x, y, vx, vy, radius) that comes to a place (2,) after so many seconds."""
     speed, direction = rng.uniform(*SPEEDS), rng.uniform(-np.pi, np.pi)
     velocity = speed * np.array([np.cos(direction), np.sin(direction)])
-    return np.concatenate([meeting - when * velocity, velocity, [rng.uniform(*RADII)]])
+    return np.concatenate([place - when * velocity, velocity, [rng.uniform(*RADII)]])

@@ -5,10 +5,11 @@ from pathlib import Path
 import click
 
 from applications.rosbot.planner import Effort
-from applications.rosbot.show import SavedPlan, print_plans, read_plan
+from applications.rosbot.saved import SavedPlan, read_plan
+from applications.rosbot.show import print_plans
 from applications.rosbot.stages import run_plan, run_synthesis
-from gpsynth.cli import begin
 from gpsynth.planning import PlanSettings
+from gpsynth.run_files import begin
 from gpsynth.runs import FILE
 
 SCENARIOS = Path(__file__).with_name("scenarios")

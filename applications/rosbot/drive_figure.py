@@ -1,13 +1,13 @@
 """A drive as a figure: what was so at a few instants, and how far the robot was from everything all the time."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from applications.rosbot.courses import Course
 from applications.rosbot.footprint import outer_radius, placed
 from applications.rosbot.gaps import gaps_to_room
-from applications.rosbot.loop import CYCLE, Drive
+from applications.rosbot.loop import CYCLE
 from applications.rosbot.room_figure import draw_room
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Flags, Sensor, moved
@@ -23,33 +23,32 @@ WIDTH = 7.2  # inches, of a page of a paper
 BEYOND = 0.6  # m, shown around the way
 
 
-def draw_drive(scenario: Scenario, drive: Drive, sensor: Sensor) -> "Figure":
-    """Six instants of a drive, and the clearance over time."""
+def draw_drive(scenario: Scenario, trajectory: Floats, ways: Sequence[Floats], sensor: Sensor) -> "Figure":
+    """Six instants of a trajectory (N, 4) t, x, y, theta, and the clearance over time.
+
+    `ways` are the points (k, 3) of the course of each cycle.
+    """
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    trajectory = drive.replay.trajectory
     with rc_context(dict(STYLE)):
         figure = Figure(figsize=(WIDTH, 0.85 * WIDTH), layout="constrained")
         places = figure.subplot_mosaic("012;345;ggg", height_ratios=(1.0, 1.0, 0.6))
         instants = np.linspace(0.0, trajectory[-1, 0], INSTANTS)
         for number, instant in enumerate(instants):
-            course = drive.courses[min(int(instant / CYCLE + 1e-9), len(drive.courses) - 1)]
+            way = ways[min(int(instant / CYCLE + 1e-9), len(ways) - 1)] if ways else np.empty((0, 3))
             so_far = trajectory[trajectory[:, 0] <= instant + 1e-9]
-            _draw_instant(places[str(number)], scenario, so_far, course, sensor)
+            _draw_instant(places[str(number)], scenario, so_far, way, sensor)
         _draw_gaps(places["g"], scenario, trajectory, instants)
         figure.legend(*places["0"].get_legend_handles_labels(), loc="outside upper center", ncols=6)
     return figure
 
 
-def _draw_instant(
-    axes: "Axes", scenario: Scenario, trajectory: Floats, course: Course, sensor: Sensor
-) -> None:
+def _draw_instant(axes: "Axes", scenario: Scenario, trajectory: Floats, way: Floats, sensor: Sensor) -> None:
     """The plane at the end of a trajectory (N, 4): what the robot sees, where it was, and its course."""
     axes.plot(*scenario.goal[:2], "*", color=RED, markersize=8.0, label="goal", zorder=5)
     axes.plot(*trajectory[:, 1:3].T, color=BLACK, linewidth=1.2, label="path", zorder=4)
-    places = course.schedule.points[:, :2].T
-    axes.plot(*places, ".", color=BLUE, markersize=3.0, label="equilibrium points", zorder=4)
+    axes.plot(*way[:, :2].T, ".", color=BLUE, markersize=3.0, label="equilibrium points", zorder=4)
     _draw_robot(axes, trajectory[-1, 1:], scenario.body, sensor.reach)
     if scenario.room is not None:
         draw_room(axes, scenario.room)
@@ -72,7 +71,8 @@ def _draw_robot(axes: "Axes", pose: Floats, body: Floats, reach: float) -> None:
     for center, radius in zip(placed(body, pose[np.newaxis])[0], body[:, 2], strict=True):
         axes.add_patch(Circle(center, radius, facecolor=SKY, edgecolor=BLACK, linewidth=0.6, zorder=5))
     axes.plot(*np.transpose([(x, y), nose]), color=BLACK, linewidth=0.8, zorder=6)
-    axes.add_patch(Circle((x, y), reach, fill=False, edgecolor=GRAY, linestyle=":", linewidth=0.6))
+    if np.isfinite(reach):
+        axes.add_patch(Circle((x, y), reach, fill=False, edgecolor=GRAY, linestyle=":", linewidth=0.6))
     axes.plot([], [], "o", color=SKY, markeredgecolor=BLACK, markeredgewidth=0.6, label="robot")
 
 

@@ -13,8 +13,9 @@ from applications.rosbot.model import reached, unicycle, wheel_coupled
 from applications.rosbot.polar_law import SATURATING, Gains, polar_law
 from applications.rosbot.scenario import Scenario
 from gpsynth.law import Law
+from gpsynth.obstacles import Obstacles
 from gpsynth.planning import PlanSettings
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 
 Reading = Literal["paper-replica", "physical"]
 

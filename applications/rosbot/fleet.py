@@ -20,6 +20,7 @@ from applications.rosbot.fleet_search import (
 )
 from applications.rosbot.planner import PlanReport
 from applications.rosbot.scenario import Scenario
+from gpsynth.checks import check_kind
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 
@@ -98,6 +99,9 @@ def plan_fleet(
 
 def check_fleet(scenarios: Sequence[Scenario]) -> None:
     """Raise ScenarioError unless there are several robots that can stand at their starts, and at their goals."""
+    check_kind("scenarios", scenarios, list, tuple, error=ScenarioError)
+    for scenario in scenarios:
+        check_kind("one of the scenarios", scenario, Scenario, error=ScenarioError)
     if len(scenarios) < 2:
         raise ScenarioError(f"a fleet has at least two robots, got {len(scenarios)}")
     for number, scenario in enumerate(scenarios):

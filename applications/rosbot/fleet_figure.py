@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from applications.rosbot.fleet import FleetReport
-from applications.rosbot.fleet_search import other_of
 from applications.rosbot.others import Other, poses_at
 from applications.rosbot.room_figure import draw_room
 from applications.rosbot.scenario import Scenario
@@ -26,16 +24,15 @@ NEAR = 1.0  # m, up to where distances of robots are shown
 FINE = 0.02  # s, between the points of a line
 
 
-def draw_fleet(report: FleetReport) -> "Figure":
+def draw_fleet(scenarios: Sequence[Scenario], driven: Sequence[Other]) -> "Figure":
     """Four instants of the plans of a fleet, and the least distance of any two robots over time."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    driven = [other_of(robot) for robot in report.robots]
-    end = max(report.arrivals)
+    end = max(each.path.times[-1] for each in driven)
     times = np.append(np.arange(0.0, end, FINE), end)
     paths = [poses_at(each.path, times) for each in driven]
-    low, high = _window(report.scenarios, paths)
+    low, high = _window(scenarios, paths)
     width, height = high - low
     columns = 1 if width > FLAT * height else 2
     rows = INSTANTS // columns
@@ -47,7 +44,7 @@ def draw_fleet(report: FleetReport) -> "Figure":
         instants = np.linspace(0.0, end, INSTANTS + 1)[1:] - end / (2 * INSTANTS)
         for axes, instant in zip(places, instants, strict=True):
             count = int(np.searchsorted(times, instant, side="right"))
-            _draw_instant(axes, report.scenarios, [path[:count] for path in paths], instant)
+            _draw_instant(axes, scenarios, [path[:count] for path in paths], instant)
             axes.set_xlim(low[0], high[0])
             axes.set_ylim(low[1], high[1])
         _draw_gaps(parts[1].subplots(), driven, times, paths, instants)

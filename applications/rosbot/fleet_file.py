@@ -29,6 +29,8 @@ class Fleet:
 
 def read_fleet(path: str | Path) -> Fleet:
     """The fleet in a file; ScenarioError names the file, the robot, the field and the value that is wrong."""
+    if not isinstance(path, str | Path):
+        raise ScenarioError(f"a fleet is read from a str or a Path, got {path!r}")
     try:
         return parse_fleet(text_of(Path(path)), name=Path(path).stem, folder=Path(path).parent)
     except ScenarioError as error:

@@ -14,7 +14,8 @@ import numpy as np
 
 from applications.rosbot.certificate import certify
 from applications.rosbot.others import Other, held_until
-from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
+from applications.rosbot.planner import PlanReport, plan_scenario
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort

@@ -1,6 +1,6 @@
 """Replanning on the way: what is left of the previous plan is where the next search begins."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -24,12 +24,20 @@ NEARNESS = 0.3  # noise of the first schedules, as a share of that along guides
 
 
 def follow(
-    problem: Problem, law: Law, previous: Plan, elapsed: float, settings: PlanSettings, seed: int
+    problem: Problem,
+    law: Law,
+    previous: Plan,
+    elapsed: float,
+    settings: PlanSettings,
+    seed: int,
+    *,
+    stop: Callable[[], bool] | None = None,
 ) -> Iterator[Found]:
     """The best schedule near what is left of a plan (with points) that has been driven for `elapsed` seconds.
 
     The problem is the one that is left: it starts where the robot now is, among obstacles where they now are. A robot
-    that is behind its plan, or ahead of it, goes on from where it should have been then.
+    that is behind its plan, or ahead of it, goes on from where it should have been then. Once `stop` says so, what has
+    been found so far is it.
     """
     count = len(previous.schedule.dwell)
     order = np.argsort(previous.particles.costs, kind="stable")[: settings.particles // 4]
@@ -49,6 +57,7 @@ def follow(
         region=_region(problem, left[0]),
         budget=min(remaining, problem.horizon),
         path=(FOLLOW, 1),
+        stop=stop,
     )
     yield Found(plan, law, plan.evaluations)
 

@@ -1,7 +1,8 @@
 """The robot that follows its commands with lags and limited accelerations, in closed form between the commands.
 
 x' = clip((gain u - x) / lag, -most, most) is a straight line until the error is most lag and an exponential after it.
-Poses are integrated by Simpson's rule over at most STEP, never across a corner of a speed.
+Poses are integrated by Simpson's rule over at most STEP, never across a corner of a speed; `lag_errors` bounds what is
+missing.
 """
 
 from dataclasses import dataclass
@@ -12,7 +13,6 @@ from applications.rosbot.model import FAMILY
 from gpsynth.arrays import Floats
 
 STEP = 1e-3  # s
-ERROR = 1e-6  # m, rad: more than accelerations of 4 m/s^2 bend a path in STEP, and than the rule is off
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +47,12 @@ class LaggingPath:
     omega: Floats  # (n,) rad/s
 
 
-def speed_under(commands: Floats, durations: Floats, gain: float, lag: float, most: float) -> Speed:
-    """The speed from rest on under commands (m,), each held for its duration (m,)."""
-    begins, wanted, first = np.cumsum(durations) - durations, gain * commands, np.zeros(len(commands))
+def speed_under(
+    commands: Floats, durations: Floats, gain: float, lag: float, most: float, *, at_first: float = 0.0
+) -> Speed:
+    """The speed under commands (m,), each held for its duration (m,), from what it is at first."""
+    begins, wanted = np.cumsum(durations) - durations, gain * commands
+    first = np.full(len(commands), at_first)
     for k in range(len(commands) - 1):
         here = Speed(begins[k : k + 1], first[k : k + 1], wanted[k : k + 1], lag, most)
         first[k + 1] = _after(here, np.zeros(1, dtype=np.intp), durations[k : k + 1])[0]
@@ -81,13 +84,27 @@ def lagging_path(start: Floats, durations: Floats, v: Speed, omega: Speed) -> La
     return LaggingPath(times, poses, v0, o0)
 
 
-def nominal_path(start: Floats, controls: Floats, durations: Floats) -> LaggingPath:
-    """The path of the nominal robot (`model.FAMILY`) from rest under (v, omega) pairs (m, 2), as long as they last."""
-    speeds = []
-    for commands, name in zip(controls.T, ("v", "omega"), strict=True):
-        gain, lag, most = (FAMILY[f"{letter}_{name}"][3] for letter in ("k", "tau", "a"))
-        speeds.append(speed_under(commands, durations, gain, lag, most))
-    return lagging_path(start, durations, *speeds)
+def nominal_speeds(
+    controls: Floats, durations: Floats, speeds: tuple[float, float] = (0.0, 0.0)
+) -> tuple[Speed, Speed]:
+    """v and omega of the nominal robot (`model.FAMILY`) under (v, omega) pairs (m, 2), by default from rest."""
+    v, omega = (
+        speed_under(
+            commands,
+            durations,
+            *(FAMILY[f"{letter}_{name}"][3] for letter in ("k", "tau", "a")),
+            at_first=at_first,
+        )
+        for commands, name, at_first in zip(controls.T, ("v", "omega"), speeds, strict=True)
+    )
+    return v, omega
+
+
+def nominal_path(
+    start: Floats, controls: Floats, durations: Floats, speeds: tuple[float, float] = (0.0, 0.0)
+) -> LaggingPath:
+    """The path of the nominal robot from a pose (3,) under (v, omega) pairs (m, 2), as long as they last."""
+    return lagging_path(start, durations, *nominal_speeds(controls, durations, speeds))
 
 
 def _after(speed: Speed, part: np.ndarray[tuple[int], np.dtype[np.intp]], elapsed: Floats) -> Floats:

@@ -5,6 +5,7 @@ far a way turns around a point inside an island of obstacles differs between two
 all islands exactly if one can be drawn into the other.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,7 @@ MOST_ISLANDS = 60  # the largest of them count
 LONGER = (1.8, 1.0)  # ways that are so many times longer than the shortest, and so many meters, are left out
 STEP = 0.05  # m, of a way while it is drawn taut
 STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))  # rows and columns from a point to its neighbors; and back
+EVERYWHERE = frozen(np.array([-np.inf, np.inf] * 2))  # bounds of x and y
 
 Indices = npt.NDArray[np.int64]
 
@@ -38,20 +40,42 @@ class Lattice:
     free: npt.NDArray[np.bool_]  # (r, c)
     graph: csr_array  # (r c, r c) lengths in m
 
+    def index(self, place: Floats) -> tuple[int, int]:
+        """Row and column of the point that is nearest to a place (2,)."""
+        first, beyond = self.points[0, 0], self.points[-1, -1]
+        spread = np.array(self.free.shape[::-1]) - 1
+        column, row = np.rint(spread * np.clip((place - first) / np.maximum(beyond - first, 1e-9), 0.0, 1.0))
+        return int(row), int(column)
 
-def ways(start: Floats, goal: Floats, field: DistanceField, clearance: float, *, count: int) -> list[Floats]:
+
+def ways(
+    start: Floats,
+    goal: Floats,
+    field: DistanceField,
+    clearance: float,
+    *,
+    count: int,
+    bounds: Floats = EVERYWHERE,
+) -> list[Floats]:
     """Up to `count` polylines (n, 2) that keep `clearance` (m) from what a field is of, the shortest first.
 
-    Start and goal (2,) are joined to the nearest free points of the lattice, whatever is between.
+    They stay within bounds (4,) of x and y. Start and goal (2,) are joined to the nearest free points of the lattice,
+    whatever is between.
     """
-    for spacing in SPACINGS:
-        lattice = lattice_of(field, clearance, max(spacing, _least_spacing(field)))
-        if lattice.free.any():
-            found = _ways(lattice, start, goal, count)
-            if found:
-                islands = _islands(lattice)
-                return [taut(way, field, clearance, islands) for way in found]
+    for lattice in lattices(field, clearance, bounds):
+        found = _ways(lattice, start, goal, count)
+        if found:
+            islands = _islands(lattice)
+            return [taut(way, field, clearance, islands) for way in found]
     return []
+
+
+def lattices(field: DistanceField, clearance: float, bounds: Floats) -> Iterator[Lattice]:
+    """Lattices over a field, each finer than the one before, that have free points."""
+    for spacing in SPACINGS:
+        lattice = lattice_of(field, clearance, max(spacing, _least_spacing(field)), bounds)
+        if lattice.free.any():
+            yield lattice
 
 
 def _least_spacing(field: DistanceField) -> float:
@@ -59,12 +83,13 @@ def _least_spacing(field: DistanceField) -> float:
     return field.spacing * float(np.sqrt(rows * columns / MOST_POINTS))
 
 
-def lattice_of(field: DistanceField, clearance: float, spacing: float) -> Lattice:
-    """The lattice over a field, its lines proved to keep `clearance` (m)."""
+def lattice_of(field: DistanceField, clearance: float, spacing: float, bounds: Floats) -> Lattice:
+    """The lattice over a field, within bounds (4,) of x and y, its lines proved to keep `clearance` (m)."""
     rows, columns = field.squares.shape
     x, y = (np.arange(0.0, field.spacing * (n - 1), spacing) for n in (columns, rows))
     points = np.stack(np.meshgrid(field.corner[0] + x, field.corner[1] + y), axis=-1)
-    free = field.at(points) >= clearance
+    low, high = bounds.reshape(2, 2).T
+    free = (field.at(points) >= clearance) & np.all((low <= points) & (points <= high), axis=-1)
     number = np.arange(free.size).reshape(free.shape)
     heads, tails = [], []
     for down, right in STEPS:
@@ -91,17 +116,15 @@ def _ways(lattice: Lattice, start: Floats, goal: Floats, count: int) -> list[Flo
     shortest = total.min()
     if not np.isfinite(shortest):
         return []
-    kept = np.flatnonzero(total <= LONGER[0] * shortest + LONGER[1])
+    kept = np.flatnonzero(total <= LONGER[0] * shortest + LONGER[1])  # with the ways to both ends
     islands = _islands(lattice)
-    turns = _turned(places, before[0], islands) - _turned(places, before[1], islands)
-    order = kept[np.argsort(total[kept], kind="stable")]
-    whole = np.rint((turns[order] - turns[order[0]]) / (2.0 * np.pi)).astype(np.int64)
-    _, firsts = np.unique(whole, axis=0, return_index=True)
+    turns = np.subtract(*(_turned(places, parents, kept, islands) for parents in before))
+    ranks = np.argsort(total[kept], kind="stable")
+    whole = np.rint((turns[ranks] - turns[ranks[0]]) / (2.0 * np.pi)).astype(np.int64)
     found = []
-    for node in order[np.sort(firsts)[:count]].tolist():
-        there, back = (_chain(parents, node) for parents in before)
-        chain = there[::-1] + back[1:]
-        found.append(np.vstack([start, places[chain], goal]))
+    for node in kept[ranks[_distinct(whole)[:count]]].tolist():
+        there, back = (chain(parents, node) for parents in before)
+        found.append(np.vstack([start, places[there[::-1] + back[1:]], goal]))
     return found
 
 
@@ -110,11 +133,12 @@ def _nearest(lattice: Lattice, point: Floats) -> int:
     return int(np.argmin(np.where(lattice.free, apart, np.inf)))
 
 
-def _chain(before: Indices, node: int) -> list[int]:
-    chain = [node]
-    while before[chain[-1]] >= 0:
-        chain.append(int(before[chain[-1]]))
-    return chain
+def chain(before: Indices, node: int) -> list[int]:
+    """The points from one to the root of a tree."""
+    found = [node]
+    while before[found[-1]] >= 0:
+        found.append(int(before[found[-1]]))
+    return found
 
 
 def _islands(lattice: Lattice) -> Floats:
@@ -130,18 +154,30 @@ def _islands(lattice: Lattice) -> Floats:
     return lattice.points.reshape(-1, 2)[first] + 1e-3
 
 
-def _turned(places: Floats, before: Indices, islands: Floats) -> Floats:
-    """How far (n, i) the way from the root of a tree to each of its points turns around the islands, in rad.
+def _turned(places: Floats, before: Indices, kept: Indices, islands: Floats) -> Floats:
+    """How far (k, i) the ways from the root of a tree to some of its points turn around the islands, in rad.
 
-    Each point knows the turn of its last line; doubling how far back a point looks sums up all lines of its way.
+    All points on these ways must be among them. Each knows the turn of its last line; doubling how far back a point
+    looks sums up all lines of its way.
     """
-    parent = np.where(before >= 0, before, np.arange(len(before)))
-    angles = _bearings(places, islands)
+    own = np.arange(len(kept))
+    rank = np.zeros(len(before), dtype=np.int64)
+    rank[kept] = own
+    parent = np.where(before[kept] < 0, own, rank[before[kept].clip(0)])
+    angles = _bearings(places[kept], islands)
     turned = _wrapped(angles - angles[parent])
     while np.any(parent != parent[parent]):
         turned = turned + turned[parent]
         parent = parent[parent]
     return turned
+
+
+def _distinct(rows: Indices) -> list[int]:
+    """The numbers of the rows (n, i) that are like none before them."""
+    firsts: dict[bytes, int] = {}
+    for number, row in enumerate(np.ascontiguousarray(rows, dtype=np.int16)):
+        firsts.setdefault(row.tobytes(), number)
+    return list(firsts.values())
 
 
 def _bearings(places: Floats, islands: Floats) -> Floats:
@@ -177,8 +213,12 @@ def _shortened(way: Floats, field: DistanceField, clearance: float, islands: Flo
     while kept[-1] < last:
         here = kept[-1]
         ahead = way[here + 1 :]
-        seen = field.along(np.broadcast_to(way[here], ahead.shape), ahead) >= clearance
-        straight = _wrapped(bearings[here + 1 :] - bearings[here])
-        seen &= np.all(np.abs(turned[here + 1 :] - turned[here] - straight) < np.pi, axis=1)
-        kept.append(here + 1 + int(np.flatnonzero(seen)[-1] if seen.any() else 0))
+        seen = (
+            here
+            + 1
+            + np.flatnonzero(field.along(np.broadcast_to(way[here], ahead.shape), ahead) >= clearance)
+        )
+        straight = _wrapped(bearings[seen] - bearings[here])
+        same = np.all(np.abs(turned[seen] - turned[here] - straight) < np.pi, axis=1)
+        kept.append(int(np.max(seen[same], initial=here + 1)))
     return frozen(way[kept])

@@ -9,19 +9,18 @@ from gpsynth.files import make_folder, write_bytes
 
 
 def copy_map(scenario_file: Path, folder: Path) -> None:
-    """Copy the YAML file and the image of a scenario that has been read, but those named by a whole path.
+    """Copy the YAML file and the image of a scenario or fleet that has been read, but those named by a whole path.
 
     Raises FileError if that is not possible.
     """
-    part = json.loads(_content(scenario_file)).get("map")
-    if part is None:
-        return
-    described = Path(part["file"])
-    image = described.parent / read_settings(scenario_file.parent / described).image
-    for name in (described, image):
-        if not name.is_absolute():
-            make_folder((folder / name).parent)
-            write_bytes(folder / name, _content(scenario_file.parent / name))
+    document = json.loads(_content(scenario_file))
+    for part in filter(None, (each.get("map") for each in (document, *document.get("robots", ())))):
+        described = Path(part["file"])
+        image = described.parent / read_settings(scenario_file.parent / described).image
+        for name in (described, image):
+            if not name.is_absolute():
+                make_folder((folder / name).parent)
+                write_bytes(folder / name, _content(scenario_file.parent / name))
 
 
 def _content(path: Path) -> bytes:

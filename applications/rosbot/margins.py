@@ -16,10 +16,12 @@ def ways_within(scenario: Scenario, wanted: float) -> tuple[float, list[Route]]:
     """The margin (m), at most the one wanted, and the routes that keep it.
 
     Half of what the start leaves; and where obstacles leave passages that are too narrow for the margin, the largest
-    one that does not shut the shortest way.
+    one that does not shut the shortest way. In a room, whose routes take long, passages are left to further attempts.
     """
     margin = min(wanted, 0.5 * start_gap(scenario))
     found = routes(scenario, margin=margin)
+    if scenario.field is not None:
+        return margin, found
     if found and (margin <= FINEST or not _has_passages(scenario, 2.0 * margin)):
         return margin, found
     shortest = min((way.length for way in routes(scenario, count=1, margin=FINEST)), default=np.inf)

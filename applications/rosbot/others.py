@@ -7,7 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from applications.rosbot.arcs import Arcs, advance, arcs
-from gpsynth.arrays import Floats, frozen
+from applications.rosbot.controls import held
+from gpsynth.arrays import Floats, frozen, shaped
+from gpsynth.checks import check_number
+from gpsynth.errors import ScenarioError
 from gpsynth.tracks import Tracks
 
 
@@ -21,8 +24,13 @@ class Other:
     radius: float  # m
 
     def __post_init__(self) -> None:
-        for name in ("start", "controls", "durations"):
-            object.__setattr__(self, name, frozen(np.array(getattr(self, name), dtype=np.float64)))
+        controls, durations = held(self.controls, self.durations)
+        object.__setattr__(self, "start", shaped("the start of another robot", self.start, (3,)))
+        object.__setattr__(self, "controls", frozen(controls))
+        object.__setattr__(self, "durations", frozen(durations))
+        check_number("the radius of another robot", self.radius, ScenarioError)
+        if not 0.0 <= self.radius < np.inf:
+            raise ScenarioError(f"the radius of another robot is {self.radius} m; expected at least 0")
 
     @cached_property
     def path(self) -> Arcs:

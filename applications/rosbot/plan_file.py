@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from applications.rosbot.certificate import Certificate
-from applications.rosbot.planner import PERIOD, PlanReport
+from applications.rosbot.planner import PlanReport
+from applications.rosbot.problems import PERIOD
 from gpsynth.arrays import Floats
 from gpsynth.files import write_json
 

@@ -3,7 +3,8 @@
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
+from math import inf
 from types import MappingProxyType
 from typing import Literal
 
@@ -14,26 +15,23 @@ from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.following import follow
 from applications.rosbot.guides import top_speed
 from applications.rosbot.margins import FINER, start_gap, ways_within
-from applications.rosbot.model import reached
-from applications.rosbot.others import tracks_of
+from applications.rosbot.problems import PERIOD, problems_of
 from applications.rosbot.reachability import Reachability, reachability
 from applications.rosbot.replay import Replay, replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort, Found, Search
-from applications.rosbot.vehicles import law_for, plant_of, steered, step_of, widened
+from applications.rosbot.vehicles import first_state, plant_of, steered, widened
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_function, check_kind, check_number
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Particles, Plan
-from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
 from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import Trajectory
 
-__all__ = ["PERIOD", "Callback", "Effort", "PlanReport", "plan_scenario", "problem_of"]
+__all__ = ["Callback", "Effort", "PlanReport", "plan_scenario"]
 
-PERIOD = 0.05  # s of the control: 2.5 cm at 0.5 m/s; twice as long costs time at every switch, half as long computing
-INSIDE = (0.001, 0.002)  # m, rad: how far within the tolerance a plan arrives, so that no rounding undoes it
+CONFIRMING = 0.01  # s that it takes to confirm a plan, until it is known
 ROUNDING = 1e-9  # share of a bound that its arithmetic may be off by
 
 Ended = Literal["complete", "callback", "rollouts", "deadline", "interrupted"]
@@ -62,7 +60,8 @@ class PlanReport:
     law: Law | None = None
     replay: Replay | None = None  # by the simulator that shares nothing with the planner's
     certificate: Certificate | None = None  # for the path between its samples
-    history: tuple[tuple[int, float], ...] = ()  # (evaluations, arrival time in s) at every improvement
+    # (evaluations, arrival time in s, planning time in s) at every improvement
+    history: tuple[tuple[int, float, float], ...] = ()
     ended: Ended = "complete"
     via: tuple[tuple[float, ...], ...] = ()  # places that are passed on the way: x, y and tolerance in m
 
@@ -104,10 +103,17 @@ def plan_scenario(
     does Ctrl-C once there is a plan. With a `previous` report, whose plan has been driven for `elapsed` seconds, what
     is left of that plan is improved under the scenario as it is now: its start is where the robot is, its circles where
     they are. Only if no collision-free plan lies near, everything is searched. Raises ScenarioError if there is no law,
-    or one that does not steer v and omega.
+    or one that does not steer v and omega, and if an argument is of a wrong kind.
     """
+    check_kind("scenario", scenario, Scenario, error=ScenarioError)
+    check_kind("effort", effort, Effort, error=ScenarioError)
+    check_kind("previous", previous, PlanReport, error=ScenarioError, optional=True)
+    check_function("callback", callback, ScenarioError, optional=True)
+    check_number("elapsed", elapsed, ScenarioError)
+    if not 0.0 <= elapsed < np.inf:
+        raise ScenarioError(f"elapsed is {elapsed} s; expected a finite number, at least 0")
     watch = _Watch(time.perf_counter(), effort, callback)
-    problems = _problems(scenario, laws)
+    problems = problems_of(scenario, laws)
     at_rest = replay(scenario, np.empty((0, 2)), PERIOD)
     stay = certify(scenario, np.empty((0, 2)), PERIOD)
     if at_rest.solves and stay.is_clear:
@@ -115,35 +121,52 @@ def plan_scenario(
         return watch.stamped(replace(arrived, certificate=stay))
     report = PlanReport("not_found", "", 0.0, 0, scenario, seed)
     if previous is not None and previous.plan is not None and previous.law is not None:
-        report = watch.improved(report, _followed(report, previous.plan, previous.law, elapsed, effort))
+        found = _followed(report, previous.plan, previous.law, elapsed, effort, stop=watch.stop)
+        report = watch.improved(report, found)
         if report.status == "planned" or report.ended != "complete":
             return report
     verdict = _verdict(scenario)
     if verdict.status == "unreachable":
         return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
     for attempt in range(effort.attempts):
+        if watch.is_over():
+            return watch.stamped(replace(report, ended="deadline"))
         margin, ways = ways_within(scenario, effort.scouts.margin / FINER**attempt)
-        search = Search(scenario, ways, problems, effort, margin, seed, attempt, threads)
+        search = Search(scenario, ways, problems, effort, margin, seed, attempt, threads, watch.stop)
         report = watch.improved(report, search.run())
         if report.status == "planned" or report.ended != "complete":
             break
     return report
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class _Watch:
     """Keeps the fastest plan of a search that the other simulator confirms, and says when to end."""
 
     began: float
     effort: Effort
     callback: "Callback | None"
+    confirming: float = CONFIRMING  # s, the longest so far; a round is broken off so much before the deadline
+
+    @property
+    def stop(self) -> Callable[[], bool] | None:
+        """Whether the deadline is near, as a question; nobody needs to ask it if there is none."""
+        return self.is_over if self.effort.deadline < inf else None
+
+    def is_over(self) -> bool:
+        """Whether the deadline is near."""
+        return time.perf_counter() - self.began >= self.effort.deadline - self.confirming
 
     def improved(self, report: PlanReport, search: Iterator[Found]) -> PlanReport:
         """The report with the fastest plan of a search, or with the reason why there is none."""
         spent = report.evaluations
         try:
             for found in search:
-                report = _confirmed(replace(report, evaluations=spent + found.evaluations), found)
+                since = time.perf_counter()
+                seconds = since - self.began
+                so_far = replace(report, evaluations=spent + found.evaluations, planning_time=seconds)
+                report = _confirmed(so_far, found)
+                self.confirming = max(self.confirming, time.perf_counter() - since)
                 ended = self._ended(report)
                 if ended != "complete":
                     return self.stamped(replace(report, ended=ended))
@@ -163,63 +186,7 @@ class _Watch:
             return "callback"
         if report.evaluations >= self.effort.rollouts:
             return "rollouts"
-        return "deadline" if time.perf_counter() - self.began >= self.effort.deadline else "complete"
-
-
-def problem_of(scenario: Scenario, law: Law) -> Problem:
-    """The scenario as a problem for a law under its limits: least time into the tolerance, a little within its edge."""
-    tolerances = scenario.position_tolerance, scenario.heading_tolerance
-    return replace(
-        _like(law, *tolerances, step_of(scenario, PERIOD)),
-        starts=widened(scenario.start, law.plant),
-        goal=widened(scenario.goal, law.plant),
-        horizon=max(PERIOD, scenario.time_limit - PERIOD),
-        obstacles=_obstacles(scenario),
-    )
-
-
-@lru_cache(maxsize=32)
-def _like(law: Law, position: float, heading: float, step: float) -> Problem:
-    """A problem with the programs of all problems for this law and tolerance (m, rad): to trace them takes a while."""
-    shrunk = max(0.5 * position, position - INSIDE[0]), max(0.5 * heading, heading - INSIDE[1])
-    nowhere = widened(np.zeros(3), law.plant)
-    return Problem(
-        law.plant,
-        nowhere,
-        nowhere,
-        tolerance=[shrunk[0], shrunk[0], shrunk[1], *np.ones(len(nowhere) - 3)],
-        period=PERIOD,
-        step=step,
-        features=law.features,
-        reached=reached(*shrunk),
-    )
-
-
-def _obstacles(scenario: Scenario) -> Obstacles:
-    if scenario.is_round:
-        return Obstacles(
-            scenario.circles,
-            scenario.bounds,
-            scenario.radius,
-            field=scenario.field,
-            tracks=tracks_of(scenario.others, PERIOD),
-        )
-    position = ("x", "y", "theta")
-    return Obstacles(scenario.circles, scenario.bounds, 0.0, position, scenario.body, scenario.field)
-
-
-def _problems(scenario: Scenario, laws: Sequence[Law]) -> list[tuple[Problem, Law]]:
-    """The laws under the scenario's limits, each with the problem as it sees it."""
-    if not laws:
-        raise ScenarioError("a plan needs at least one law")
-    for law in laws:
-        if law.plant.control_names != ("v", "omega"):
-            raise ScenarioError(
-                f"the law steers {', '.join(law.plant.control_names)}; a scenario needs v, omega"
-            )
-    plant = plant_of(scenario)
-    adapted = [_carried(law, plant) for law in laws]
-    return [(problem_of(scenario, law), law) for law in adapted]
+        return "deadline" if self.is_over() else "complete"
 
 
 def _verdict(scenario: Scenario) -> Reachability:
@@ -237,17 +204,12 @@ def _verdict(scenario: Scenario) -> Reachability:
     )
 
 
-@lru_cache(maxsize=32)
-def _carried(law: Law, plant: Plant) -> Law:
-    return law_for(law, plant)
-
-
 def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanReport:
     """The plan to stay, of a start within the tolerance: without points, controls and search."""
     stay = Trajectory(
         plant=law.plant,
         t=np.zeros(1),
-        x=widened(scenario.start[np.newaxis], law.plant),
+        x=first_state(scenario, law.plant)[np.newaxis],
         u=np.empty((0, 2)),
         target=widened(scenario.goal[np.newaxis], law.plant),
         arrival=0.0,
@@ -270,15 +232,22 @@ def _arrived(scenario: Scenario, law: Law, at_rest: Replay, seed: int) -> PlanRe
 
 
 def _followed(
-    report: PlanReport, previous: Plan, law: Law, elapsed: float, effort: Effort
+    report: PlanReport,
+    previous: Plan,
+    law: Law,
+    elapsed: float,
+    effort: Effort,
+    *,
+    stop: Callable[[], bool] | None,
 ) -> Iterator[Found]:
     """Plans near what is left of the previous one; none if that was to stay, or of a robot with other states."""
     plant = plant_of(report.scenario)
     if not len(previous.schedule.dwell) or law.plant.state_names != plant.state_names:
         return iter(())
-    [(problem, law)] = _problems(report.scenario, [law])
+    [(problem, law)] = problems_of(report.scenario, [law])
     margin = min(effort.followers.margin, 0.5 * start_gap(report.scenario), max(previous.clearance, 0.0))
-    return follow(problem, law, previous, elapsed, replace(effort.followers, margin=margin), report.seed)
+    settings = replace(effort.followers, margin=margin)
+    return follow(problem, law, previous, elapsed, settings, report.seed, stop=stop)
 
 
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:
@@ -299,7 +268,7 @@ def _confirmed(report: PlanReport, found: Found) -> PlanReport:
         law=found.law,
         replay=check,
         certificate=proof,
-        history=(*report.history, (report.evaluations, plan.arrival_time)),
+        history=(*report.history, (report.evaluations, plan.arrival_time, report.planning_time)),
     )
 
 

@@ -8,17 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from applications.rosbot.courses import Course, alternatives, anew
+from applications.rosbot.courses import Course, along_route, alternatives, anew, standing
 from applications.rosbot.guides import top_speed
-from applications.rosbot.planner import problem_of
+from applications.rosbot.problems import problem_of
 from applications.rosbot.scenario import Scenario
+from applications.rosbot.vehicles import POSE, widened
+from applications.rosbot.wayfinder import Part
 from gpsynth.arrays import Floats
 from gpsynth.checks import check_number, check_whole
 from gpsynth.errors import ScenarioError
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
 from gpsynth.optimizers import PSO, minimize
 from gpsynth.planning import Objective, PlanSettings
+from gpsynth.rollouts import Rollouts
 from gpsynth.schedule import Schedules
 
 CRASH = 1e3  # cost of less clearance than the least, more than that of any delay
@@ -55,6 +58,7 @@ class Replanning:
     @classmethod
     def keeping(cls, margin: float) -> "Replanning":
         """The same with another margin (m), half of which is the least clearance."""
+        check_number("margin of replanning", margin)
         return cls(margin=margin, least=0.5 * margin)
 
 
@@ -66,21 +70,38 @@ class Caution:
     least: float  # m
 
     def __call__(self, vectors: Floats, limits: Floats | None = None) -> Floats:
-        """Costs (N,) of vectors (N, d), with limits (N,) as the objective has them."""
-        points, dwell = self.objective.schedules(vectors)
-        return self.costs(self.objective.rollouts(points, dwell, limits), points)
+        """Costs (N,) of vectors (N, d), the poses (k, 3) and dwell times (k,) of courses, with limits (N,) of these."""
+        courses = self.courses(vectors)
+        return self.costs(self.rollouts(courses, limits), courses)
 
-    def costs(self, rollouts: Rollouts, points: Floats) -> Floats:
+    def courses(self, vectors: Floats) -> Schedules:
+        """What vectors (N, d) stand for."""
+        count = self.objective.settings.points
+        return Schedules(vectors[:, : POSE * count].reshape(-1, count, POSE), vectors[:, POSE * count :])
+
+    def rollouts(self, courses: Schedules, limits: Floats | None = None) -> Rollouts:
+        """Rollouts (N, 1) of courses, with limits (N,) as the objective has them."""
+        return self.objective.rollouts(self._states(courses), courses.dwell, limits)
+
+    def costs(self, rollouts: Rollouts, courses: Schedules) -> Floats:
         """Costs (N,) of what has been rolled out."""
         missing = self.least - rollouts.clearance[:, 0]
         crash = np.where(missing > 0.0, CRASH * (1.0 + missing), 0.0)
-        costs: Floats = self.objective.costs(rollouts, points) + crash
+        costs: Floats = self.objective.costs(rollouts, self._states(courses)) + crash
         return costs
+
+    def soon(self, courses: Schedules) -> Floats:
+        """The least clearance (N,) of courses in the next moments."""
+        evaluator, law = self.objective.evaluator, self.objective.law
+        return evaluator.of_schedules(law, self._states(courses), courses.dwell, SOON).clearance[:, 0]
 
     def is_clear(self, course: Schedules) -> bool:
         """Whether the first of these courses leads to the goal with at least the least clearance."""
-        rollouts = self.objective.rollouts(course.points[:1], course.dwell[:1])
+        rollouts = self.rollouts(course.take(np.arange(1)))
         return bool(np.isfinite(rollouts.arrival[0, 0]) and rollouts.clearance[0, 0] >= self.least)
+
+    def _states(self, courses: Schedules) -> Floats:
+        return widened(courses.points, self.objective.law.plant)
 
 
 def replan(
@@ -90,22 +111,26 @@ def replan(
     elapsed: float,
     settings: Replanning = Replanning(),
     *,
+    part: Part | None = None,
     seed: int = 0,
     path: tuple[int, ...] = (0,),
 ) -> Course:
     """The course from the scene's start on, `elapsed` seconds after the previous one began.
 
-    The law must be for the scene's limits. The same seed and path give the same course.
+    The law must be for the scene's limits; `part` is of the scene's room. The same seed and path give the same course.
     """
     left = previous.remainder(elapsed)
     caution = _caution(scene, law, settings, left, previous.arrival_time - elapsed)
     is_clear = caution.is_clear(left)
     tried = [left.take(np.arange(1)), alternatives(left[0], scene.start, scene.goal)]
+    count = left.points.shape[1]
+    if part is not None:
+        tried.append(Schedules.of([along_route(part.way, count, top_speed(scene))]))
     if not is_clear:
-        tried.append(anew(scene, left.points.shape[1], settings.margin))
+        tried.append(anew(scene, count, settings.margin, part))
     tried.append(left.take(np.arange(1, len(left))))
     vectors = np.concatenate([_vectors(each) for each in tried])[: settings.particles]
-    lower, upper = _box(vectors, scene, left.points.shape[1])
+    lower, upper = _box(vectors, scene, count)
     optimizer = PSO.clerc(lower, upper, size=settings.particles, x0=np.clip(vectors, lower, upper))
     generations = settings.generations if is_clear else settings.anew
     found = minimize(
@@ -117,8 +142,9 @@ def replan(
         limits=optimizer.limits,
     )
     best = found.state.best_x[np.argsort(found.state.best_costs, kind="stable")]
-    swarm = Schedules(*caution.objective.schedules(best))
-    return _chosen(caution, Schedules.joined([left.take(np.arange(1)), swarm]), settings)
+    swarm = caution.courses(best)
+    stay = Schedules.of([standing(scene.start).split(count)])
+    return _chosen(caution, Schedules.joined([left.take(np.arange(1)), swarm, stay]), scene, settings)
 
 
 def _caution(scene: Scenario, law: Law, settings: Replanning, left: Schedules, remaining: float) -> Caution:
@@ -140,22 +166,24 @@ def _ample(scene: Scenario) -> float:
     return float(2.0 * (np.hypot(*(scene.goal - scene.start)[:2]) / top_speed(scene) + turn))
 
 
-def _chosen(caution: Caution, courses: Schedules, settings: Replanning) -> Course:
-    """The best course unless the first, which is followed, is nearly as good; if none is clear, what is clear soon."""
+def _chosen(caution: Caution, courses: Schedules, scene: Scenario, settings: Replanning) -> Course:
+    """The best course unless the first, which is followed, is nearly as good; if none is clear, what is clear soon.
+
+    The last is to stay.
+    """
     objective = caution.objective
-    points, dwell = courses.points, courses.dwell
-    rollouts = objective.rollouts(points, dwell)
-    costs = caution.costs(rollouts, points)
+    rollouts = caution.rollouts(courses)
+    costs = caution.costs(rollouts, courses)
     costs[0] -= objective.settings.beta * settings.gain / objective.budget
     best = int(np.argmin(costs))
     if rollouts.clearance[best, 0] < settings.least:
-        soon = objective.evaluator.of_schedules(objective.law, points, dwell, SOON).clearance[:, 0]
-        best = int(np.lexsort([costs, np.maximum(settings.least - soon, 0.0)])[0])
+        best = int(np.lexsort([costs, np.maximum(settings.least - caution.soon(courses), 0.0)])[0])
     return Course(
         schedule=courses[best],
+        goal=scene.goal,
         arrival_time=float(objective.arrivals(rollouts)[best]),
         clearance=float(rollouts.clearance[best, 0]),
-        swarm=courses.take(np.arange(1, 1 + min(settings.kept, len(courses) - 1))),
+        swarm=courses.take(np.arange(1, 1 + min(settings.kept, len(courses) - 2))),
     )
 
 

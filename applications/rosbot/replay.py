@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from applications.rosbot.gaps import gaps_to_room, least_gap
+from applications.rosbot.controls import held
+from applications.rosbot.gaps import least_gap, least_gap_to_room
 from applications.rosbot.lags import nominal_path
 from applications.rosbot.others import Other
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats, frozen
-from gpsynth.errors import ScenarioError
 
 STEP = 1e-3  # s; at 0.5 m/s the robot moves half a millimeter in it
 SLACK = 1e-6  # m and rad; what rounding may cost a path that touches an obstacle or just arrives
@@ -39,11 +39,10 @@ def replay(
     """Drive (v, omega) pairs, (n, 2), for `period` seconds each (one number, or one per pair), in steps of 1 ms.
 
     The robot starts at the scenario's start and stops at the end of the controls. It has arrived in the goal's
-    tolerance once it has been within the third number (m) of each place in `via` (m, 3), one after the other.
+    tolerance once it has been within the third number (m) of each place in `via` (m, 3), one after the other. Raises
+    ScenarioError if these are no controls.
     """
-    controls = np.asarray(controls, dtype=np.float64)
-    durations = np.broadcast_to(np.asarray(period, dtype=np.float64), (len(controls),))
-    _check(controls, durations)
+    controls, durations = held(controls, period)
     trajectory = _driven(scenario, controls, durations)
     reached = within(scenario, trajectory[:, 1:])
     reached[: _passed(trajectory, via)] = False
@@ -63,7 +62,7 @@ def replay(
 def _driven(scenario: Scenario, controls: Floats, durations: Floats) -> Floats:
     if scenario.model != "dynamic_unicycle":
         return drive(scenario.start, controls, durations)
-    path = nominal_path(scenario.start, controls, durations)
+    path = nominal_path(scenario.start, controls, durations, scenario.speeds)
     return np.column_stack([path.times, path.poses])
 
 
@@ -107,7 +106,7 @@ def clearance(scenario: Scenario, trajectory: Floats) -> float:
     t, poses = trajectory[:, 0], trajectory[:, 1:]
     gap = least_gap(scenario.body, scenario.circles, poses, t)
     if scenario.room is not None:
-        gap = min(gap, float(gaps_to_room(scenario.body, scenario.room, poses).min()))
+        gap = min(gap, least_gap_to_room(scenario.body, scenario.room, poses))
     return min(gap, *(_gap_to(other, scenario.radius, trajectory) for other in scenario.others), np.inf)
 
 
@@ -147,12 +146,3 @@ def _in_bounds(scenario: Scenario, trajectory: Floats) -> bool:
     position = trajectory[:, 1:3]
     low, high = scenario.bounds[[0, 2]], scenario.bounds[[1, 3]]
     return bool(np.all((position >= low - SLACK) & (position <= high + SLACK)))
-
-
-def _check(controls: Floats, durations: Floats) -> None:
-    if controls.ndim != 2 or controls.shape[1] != 2:
-        raise ScenarioError(f"controls have shape {controls.shape}; expected (n, 2), v and omega")
-    if not np.all(np.isfinite(controls)) or not np.all(np.isfinite(durations)):
-        raise ScenarioError("controls or their durations hold NaN or infinity; expected finite numbers")
-    if np.any(durations < 0.0):
-        raise ScenarioError(f"the shortest duration is {durations.min():g} s; expected at least 0")

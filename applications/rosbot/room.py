@@ -7,7 +7,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from gpsynth.arrays import Floats, frozen
+from gpsynth.arrays import Floats, frozen, shaped
+from gpsynth.checks import check_kind
 from gpsynth.distance_field import Cells, DistanceField, field_of_cells, squares_of_shapes
 from gpsynth.errors import ScenarioError
 
@@ -30,8 +31,12 @@ class Room:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "cells", frozen(np.asarray(self.cells, dtype=np.bool_)))
-        object.__setattr__(self, "polygons", tuple(map(_numbers, self.polygons)))
-        object.__setattr__(self, "segments", frozen(_numbers(self.segments).reshape(-1, 4)))
+        check_kind("polygons", self.polygons, list, tuple, error=ScenarioError)
+        polygons = tuple(shaped("a polygon", each, (-1, 2)) for each in self.polygons)
+        if any(len(corners) < 3 for corners in polygons):
+            raise ScenarioError(f"a polygon has {min(map(len, polygons))} corners; expected at least 3")
+        object.__setattr__(self, "polygons", polygons)
+        object.__setattr__(self, "segments", shaped("segments", self.segments, (-1, 4)))
         if not (self.cells.any() or self.polygons or len(self.segments)):
             raise ScenarioError(
                 "the room is empty: its map has no occupied cell, and there is nothing else in it"
@@ -54,6 +59,11 @@ class Room:
         points = np.concatenate(ends)
         return np.stack([points.min(axis=0), points.max(axis=0)])
 
+    @property
+    def roughness(self) -> float:
+        """How much `gaps` may be less than the distance to the nearest sample of the cells' boundary, m."""
+        return 0.5 * self.width / SAMPLES if self.cells.any() else 0.0
+
     def gaps(self, points: Floats) -> Floats:
         """The distances (N,) of points (N, 2), negative inside a polygon, 0 inside a cell.
 
@@ -71,7 +81,7 @@ class Room:
         if not self.cells.any():
             return gaps
         nearest = self._boundary.query(points)[0]
-        beside = np.sqrt(np.maximum(nearest**2 - (0.5 * self.width / SAMPLES) ** 2, 0.0))
+        beside = np.sqrt(np.maximum(nearest**2 - self.roughness**2, 0.0))
         least: Floats = np.minimum(gaps, np.where(self._covers(points), 0.0, beside))
         return least
 
@@ -130,10 +140,6 @@ class Room:
 @lru_cache(maxsize=2)  # a loop asks for the field of one room again and again
 def _field(room: Room, spacing: float, low: tuple[float, ...], high: tuple[float, ...]) -> DistanceField:
     return room.grid(spacing, np.array(low), np.array(high))
-
-
-def _numbers(values: Floats) -> Floats:
-    return frozen(np.asarray(values, dtype=np.float64))
 
 
 def _check_size(box: Floats, width: float) -> None:

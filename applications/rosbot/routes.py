@@ -44,18 +44,26 @@ def routes(scenario: Scenario, *, count: int = 5, margin: float = 0.0) -> list[R
     a lattice (`lattice.py`).
     """
     if scenario.field is not None:
-        return _in_room(scenario, scenario.field, count, scenario.radius + margin)
+        return routes_in_room(scenario, scenario.field, count, scenario.radius + margin)
     start, goal = scenario.start[:2], scenario.goal[:2]
     discs = clear_of(clear_of(grown(scenario.discs, margin), start), goal)
     return shortest_routes(start, goal, discs, scenario.bounds, count=count)
 
 
-def _in_room(scenario: Scenario, field: DistanceField, count: int, clearance: float) -> list[Route]:
-    for x, y, radius in scenario.discs:
-        gaps = np.hypot(*(field.nodes - [x, y]).transpose(2, 0, 1)) - radius + scenario.radius
-        field = field.joined(gaps * np.abs(gaps))
-    found = ways(scenario.start[:2], scenario.goal[:2], field, clearance, count=count)
+def routes_in_room(scenario: Scenario, field: DistanceField, count: int, clearance: float) -> list[Route]:
+    """Routes that keep `clearance` (m) from the scenario's circles and from what a field is of."""
+    field = with_discs(field, scenario.circles[:, [0, 1, 4]])
+    ends = scenario.start[:2], scenario.goal[:2]
+    found = ways(*ends, field, clearance, bounds=scenario.bounds, count=count)
     return [Route(way, float(np.hypot(*np.diff(way, axis=0).T).sum())) for way in found]
+
+
+def with_discs(field: DistanceField, discs: Floats) -> DistanceField:
+    """The field of what it is of and of discs (c, 3) besides."""
+    for x, y, radius in discs:
+        gaps = np.hypot(*(field.nodes - [x, y]).transpose(2, 0, 1)) - radius
+        field = field.joined(gaps * np.abs(gaps))
+    return field
 
 
 def shortest_routes(start: Floats, goal: Floats, discs: Floats, bounds: Floats, *, count: int) -> list[Route]:

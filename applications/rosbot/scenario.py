@@ -10,6 +10,7 @@ from applications.rosbot.gaps import gaps_at, gaps_to_room
 from applications.rosbot.others import Other
 from applications.rosbot.room import Room
 from gpsynth.arrays import Floats, frozen
+from gpsynth.checks import check_kind, check_number
 from gpsynth.distance_field import DistanceField
 from gpsynth.errors import ScenarioError
 
@@ -47,6 +48,7 @@ class Scenario:
     room: Room | None = None  # obstacles at rest that are no circles
     others: tuple[Other, ...] = ()  # robots whose way is known
     model: str = "unicycle"  # or another of MODELS
+    speeds: tuple[float, float] = (0.0, 0.0)  # m/s, rad/s at the start, of a robot with lags; 0 of others
     turning_radius: float = 0.0  # m, the least of a car; 0 of others
     position_tolerance: float = 0.05  # m
     heading_tolerance: float = 0.1  # rad
@@ -64,12 +66,13 @@ class Scenario:
             ("footprint", (-1, 3)),
         ):
             object.__setattr__(self, name, frozen(_shaped(name, getattr(self, name), shape)))
-        for name in ("speed_limits", "turn_limits"):
+        for name in ("speed_limits", "turn_limits", "speeds"):
             low, high = _shaped(name, getattr(self, name), (2,))
             object.__setattr__(self, name, (float(low), float(high)))
         if len(self.footprint):
             _check_footprint(self.footprint)
             object.__setattr__(self, "radius", inner_radius(self.footprint))
+        _check_kinds(self)
         _check_numbers(self)
         _check_model(self)
         _check_obstacles(self)
@@ -112,7 +115,10 @@ class Scenario:
 
 
 def _shaped(name: str, value: object, shape: tuple[int, ...]) -> Floats:
-    array = np.asarray(value, dtype=np.float64)
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ScenarioError(f"{name} must hold numbers in rows of equal length, got {value!r}") from None
     if not array.size and -1 in shape:
         return np.zeros([max(size, 0) for size in shape])
     if array.ndim != len(shape) or any(
@@ -123,12 +129,28 @@ def _shaped(name: str, value: object, shape: tuple[int, ...]) -> Floats:
     return array
 
 
+def _check_kinds(scenario: Scenario) -> None:
+    check_kind("room", scenario.room, Room, error=ScenarioError, optional=True)
+    check_kind("others", scenario.others, tuple, error=ScenarioError)
+    for other in scenario.others:
+        check_kind("one of the others", other, Other, error=ScenarioError)
+    check_kind("name", scenario.name, str, error=ScenarioError)
+
+
 def _check_numbers(scenario: Scenario) -> None:
-    largest = {"start": MOST, "goal": MOST, "speed_limits": FASTEST, "turn_limits": FASTEST}
+    largest = {
+        "start": MOST,
+        "goal": MOST,
+        "speed_limits": FASTEST,
+        "turn_limits": FASTEST,
+        "speeds": FASTEST,
+    }
     for name, most in largest.items():
         value = np.asarray(getattr(scenario, name))
         if not np.all(np.abs(value) <= most):
             raise ScenarioError(f"{name} is {value.tolist()}; expected finite numbers within ±{most:g}")
+    for name in ("radius", "turning_radius", "position_tolerance", "heading_tolerance", "time_limit"):
+        check_number(name, getattr(scenario, name), ScenarioError)
     for name in ("position_tolerance", "heading_tolerance", "time_limit"):
         if not 0.0 < getattr(scenario, name) <= MOST:
             raise ScenarioError(
@@ -150,6 +172,10 @@ def _check_numbers(scenario: Scenario) -> None:
 def _check_model(scenario: Scenario) -> None:
     if scenario.model not in MODELS:
         raise ScenarioError(f"the model is {scenario.model!r}; expected {', '.join(MODELS)}")
+    if scenario.model != "dynamic_unicycle" and scenario.speeds != (0.0, 0.0):
+        raise ScenarioError(
+            f"a {scenario.model} begins at the speeds {list(scenario.speeds)}; expected 0, for it has no lags"
+        )
     if scenario.model == "car" and not 0.0 < scenario.turning_radius <= MOST:
         raise ScenarioError(
             f"the car's turning radius is {scenario.turning_radius:g} m; expected more than 0"

@@ -81,6 +81,8 @@ class _Document(Strict):
 
 def read_scenario(path: str | Path) -> Scenario:
     """The scenario in a file; ScenarioError names the file, the field and the value that is wrong."""
+    if not isinstance(path, str | Path):
+        raise ScenarioError(f"a scenario is read from a str or a Path, got {path!r}")
     try:
         return parse_scenario(text_of(Path(path)), name=Path(path).stem, folder=Path(path).parent)
     except ScenarioError as error:

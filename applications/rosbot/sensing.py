@@ -54,19 +54,20 @@ def moved(circles: Floats, time: float) -> Floats:
     return later
 
 
-def scene_ahead(scenario: Scenario, circles: Floats, pose: Floats, delay: float) -> Scenario:
-    """The scenario as it will be after a delay (s): from a pose (3,) there, with the circles (c, 5) moved on.
+def scene_ahead(scenario: Scenario, circles: Floats, state: Floats, delay: float) -> Scenario:
+    """The scenario as it will be after a delay (s): from a state (5,) there, with the circles (c, 5) moved on.
 
     A circle that the robot would overlap is shrunk until it does not, a robot that would overlap the room is made
     thinner, and a pose out of bounds is moved inside: where it should not be it is all the same, and has to leave.
     """
     later = moved(circles, delay)
     low, high = scenario.bounds.reshape(2, 2).T
+    pose, speeds = state[:3], state[3:]
     start = np.append(np.clip(pose[:2], low, high), np.remainder(pose[2] + np.pi, 2.0 * np.pi) - np.pi)
     slim = _thinned(scenario, start)
     fits = gaps_at(slim.body, later, start) + later[:, 4] - TOUCHING
     later[:, 4] = np.minimum(later[:, 4], fits)
-    return replace(slim, start=start, circles=later[fits >= 0.0])
+    return replace(slim, start=start, speeds=(speeds[0], speeds[1]), circles=later[fits >= 0.0])
 
 
 def _thinned(scenario: Scenario, pose: Floats) -> Scenario:

@@ -1,87 +1,89 @@
-"""What a run folder or a plan file holds: the figures in a table, and the pictures drawn anew."""
+"""What a run folder or one of its files holds: the figures in words, and the pictures drawn anew."""
 
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Literal
 
-import msgspec
+import click
 import numpy as np
 
+from applications.rosbot.drive_figure import draw_drive
 from applications.rosbot.figures import draw_plan, save_figure
-from applications.rosbot.scenario import MOST
+from applications.rosbot.fleet_figure import draw_fleet
+from applications.rosbot.fleet_file import read_fleet
+from applications.rosbot.others import Other, held_until
+from applications.rosbot.replay import replay
+from applications.rosbot.saved import (
+    SavedDrive,
+    SavedFleet,
+    SavedPlan,
+    read_drive,
+    read_fleet_plan,
+    read_plan,
+)
 from applications.rosbot.scenario_file import read_scenario
+from applications.rosbot.sensing import Sensor
 from gpsynth.arrays import Floats
+from gpsynth.command_line import load_law
 from gpsynth.errors import FileError
-from gpsynth.files import read_json
 
-LARGEST_PLAN = 20_000_000  # bytes
-FARTHEST = 2.0 * MOST  # a scenario may end at MOST, and a plan or its points go beyond
-Number = Annotated[float, msgspec.Meta(ge=-FARTHEST, le=FARTHEST)]
-Duration = Annotated[float, msgspec.Meta(ge=0.0, le=FARTHEST)]
+DRIVE, FLEET, LAW = "drive.json", "fleet.json", "law.json"
 
 
-class SavedSchedule(msgspec.Struct):
-    """The equilibrium points of a plan and their dwell times (s)."""
+def show_place(place: Path) -> None:
+    """Print what a run folder or a single file holds, and draw its pictures anew.
 
-    points: list[tuple[Number, Number, Number]]
-    dwell: list[Duration]
-
-    def __post_init__(self) -> None:
-        if len(self.points) != len(self.dwell):
-            raise ValueError(
-                f"Expected as many points as dwell times, got {len(self.points)} and {len(self.dwell)}"
-            )
-
-
-class SavedPlan(msgspec.Struct):
-    """What is shown of a plan.json; without a plan all but status, reason and times are null or empty."""
-
-    status: Literal["planned", "unreachable", "not_found"]
-    planning_time: Annotated[float, msgspec.Meta(ge=0.0)]  # s
-    control_period: Annotated[float, msgspec.Meta(gt=0.0, le=FARTHEST)]  # s
-    reason: str = ""
-    ended: str = "complete"
-    arrival_time: Duration | None = None  # s
-    clearance: float | None = None  # m; null without obstacles
-    lower_bound: float | None = None  # s
-    controls: list[tuple[Number, Number]] = []
-    trajectory: list[tuple[Duration, Number, Number, Number]] = []
-    schedule: SavedSchedule | None = None
-    via: list[tuple[Number, Number, Duration]] = []  # m
-
-    def __post_init__(self) -> None:
-        if self.is_found and (self.arrival_time is None or not self.trajectory):
-            raise ValueError("Expected an arrival time and a trajectory, the status being planned")
-
-    @property
-    def is_found(self) -> bool:
-        """Whether there is a plan, be it to stay."""
-        return self.status == "planned"
+    Raises FileError if there is nothing to show, or a file is damaged.
+    """
+    files = plan_files(place)
+    law_file, drive_file, fleet_file = (_named(place, name) for name in (LAW, DRIVE, FLEET))
+    if not (files or law_file or drive_file or fleet_file):
+        raise FileError(f"{place} holds none of {LAW}, plan.json, {DRIVE} and {FLEET}")
+    if law_file:
+        click.echo("\n".join(load_law(law_file).formulas()))
+    if files:
+        print_plans([(name_of(path), read_plan(path)) for path in files])
+    if drive_file:
+        click.echo(drive_line(name_of(drive_file), read_drive(drive_file)))
+    if fleet_file:
+        click.echo(fleet_line(name_of(fleet_file), read_fleet_plan(fleet_file)))
+    drawn = [
+        *map(redraw, files),
+        drive_file and redraw_drive(drive_file),
+        fleet_file and redraw_fleet(fleet_file),
+    ]
+    for picture in filter(None, drawn):
+        click.echo(f"drawn: {picture}")
 
 
-def read_plan(path: Path) -> SavedPlan:
-    """The plan in a file; raises FileError if it is not one."""
-    try:
-        return msgspec.convert(read_json(path, LARGEST_PLAN), SavedPlan)
-    except msgspec.ValidationError as error:
-        raise FileError(f"{path} is not a plan: {error}") from None
+def _named(place: Path, name: str) -> Path | None:
+    """The file of a name in a folder, or the one that is named itself."""
+    path = place / name if place.is_dir() else place
+    return path if path.name == name and path.exists() else None
 
 
 def plan_files(place: Path) -> list[Path]:
     """The plans of a run folder, or the one that is named."""
-    return sorted(place.glob("plan*.json")) if place.is_dir() else [place]
+    if place.is_dir():
+        return sorted(place.glob("plan*.json"))
+    return [] if place.name in (DRIVE, FLEET, LAW) and place.exists() else [place]
 
 
-def scenario_beside(plan_file: Path) -> Path:
-    """Where the scenario of a plan is kept: scenario.json beside plan.json, scenario_x.json beside plan_x.json."""
-    return plan_file.with_name("scenario" + plan_file.name.removeprefix("plan"))
+def scenario_beside(file: Path) -> Path:
+    """Where the scenario of a plan is kept: scenario.json beside plan.json, scenario_x.json beside plan_x.json.
+
+    A drive has scenario_drive.json, a fleet scenario_fleet.json, so that all may share a folder.
+    """
+    stem = file.stem.removeprefix("plan").removeprefix("_")
+    return file.with_name(f"scenario_{stem}.json" if stem else "scenario.json")
 
 
-def name_of(plan_file: Path) -> str:
-    """The name of a plan's scenario, or the plan's own where the scenario is not there."""
-    scenario_file = scenario_beside(plan_file)
-    return read_scenario(scenario_file).name if scenario_file.exists() else plan_file.stem
+def name_of(file: Path) -> str:
+    """The name of the scenario of a plan, drive or fleet, or the file's own where the scenario is not there."""
+    scenario_file = scenario_beside(file)
+    if not scenario_file.exists():
+        return file.stem
+    return read_fleet(scenario_file).name if file.name == FLEET else read_scenario(scenario_file).name
 
 
 def redraw(plan_file: Path) -> Path | None:
@@ -100,6 +102,61 @@ def redraw(plan_file: Path) -> Path | None:
     )
     save_figure(figure, picture)
     return picture
+
+
+def redraw_drive(file: Path) -> Path | None:
+    """Draw a drive as a PNG beside its file; where its scenario is not there, an older picture is removed."""
+    drive, picture = read_drive(file), file.with_suffix(".png")
+    if not scenario_beside(file).exists():
+        picture.unlink(missing_ok=True)
+        return None
+    scenario = read_scenario(scenario_beside(file))
+    trajectory = replay(scenario, np.array(drive.speeds).reshape(-1, 2), drive.control_period).trajectory
+    ways = [np.array(course.points).reshape(-1, 3) for course in drive.courses]
+    save_figure(draw_drive(scenario, trajectory, ways, Sensor(drive.reach or math.inf)), picture)
+    return picture
+
+
+def redraw_fleet(file: Path) -> Path | None:
+    """Draw the plans of a fleet as a PNG beside their file; where there are none, an older picture is removed."""
+    fleet, picture = read_fleet_plan(file), file.with_suffix(".png")
+    if not fleet.robots or not scenario_beside(file).exists():
+        picture.unlink(missing_ok=True)
+        return None
+    scenarios = read_fleet(scenario_beside(file)).scenarios
+    if len(scenarios) != len(fleet.robots):
+        raise FileError(
+            f"{scenario_beside(file)} has {len(scenarios)} robots; {file} has {len(fleet.robots)}"
+        )
+    driven = []
+    for scenario, plan in zip(scenarios, fleet.robots, strict=True):
+        controls = np.array(plan.controls).reshape(-1, 2)
+        held = held_until(controls, plan.control_period, plan.arrival_time or 0.0)
+        driven.append(Other(scenario.start, *held, scenario.radius))
+    save_figure(draw_fleet(scenarios, driven), picture)
+    return picture
+
+
+def drive_line(name: str, drive: SavedDrive) -> str:
+    """What came of a drive."""
+    cycle, end = drive.planning_ms, len(drive.speeds) * drive.control_period
+    end = end if drive.arrival_time is None else drive.arrival_time
+    clearance = "" if drive.clearance is None else f", clearance {drive.clearance:.3f} m"
+    if drive.reason:
+        return f"{name}: {drive.status}, {drive.reason}"
+    planning = f"planning {_text(cycle.median, 0)} ms a cycle, at most {_text(cycle.max, 0)} ms"
+    return f"{name}: {drive.status}, {end:.2f} s{clearance}, {planning}"
+
+
+def fleet_line(name: str, fleet: SavedFleet) -> str:
+    """What came of the plans of a fleet."""
+    if fleet.last_arrival is None:
+        return f"{name}: {fleet.status}, {fleet.reason}"
+    alone = max(each or 0.0 for each in fleet.alone)
+    return (
+        f"{name}: {fleet.status}, last arrival {fleet.last_arrival:.2f} s, alone {alone:.2f} s, clearance of "
+        f"any two at least {_text(fleet.clearance, 4)} m, planned in {fleet.planning_time:.1f} s"
+    )
 
 
 def print_plans(plans: Sequence[tuple[str, SavedPlan]]) -> None:

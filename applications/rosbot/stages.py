@@ -8,13 +8,9 @@ from pathlib import Path
 import click
 import numpy as np
 
-from applications.rosbot.drive_figure import draw_drive
-from applications.rosbot.drive_file import status_of, write_drive
-from applications.rosbot.figures import save_figure
+from applications.rosbot.drive_file import write_drive
 from applications.rosbot.fleet import FleetReport
-from applications.rosbot.fleet_figure import draw_fleet
 from applications.rosbot.fleet_file import write_fleet
-from applications.rosbot.fleet_search import arrival
 from applications.rosbot.loop import Drive
 from applications.rosbot.map_copy import copy_map
 from applications.rosbot.model import STATES
@@ -22,14 +18,23 @@ from applications.rosbot.plan_file import plan_document, write_plan
 from applications.rosbot.planner import Effort, PlanReport, plan_scenario
 from applications.rosbot.scenario_file import read_scenario
 from applications.rosbot.sensing import Sensor
-from applications.rosbot.show import redraw, scenario_beside
+from applications.rosbot.show import (
+    DRIVE,
+    FLEET,
+    redraw,
+    redraw_drive,
+    redraw_fleet,
+    scenario_beside,
+)
 from applications.rosbot.stabilizer import SEARCH_BUDGET, stabilization, synthesize_stabilizer
 from applications.rosbot.through import plan_through
-from gpsynth.cli import EncodingName, load_law, recorder, status, write_result
+from gpsynth.cli import EncodingName
+from gpsynth.command_line import load_law, status
 from gpsynth.errors import FileError, GpsynthError, LawError
 from gpsynth.files import write_bytes
 from gpsynth.law import Law
 from gpsynth.record import Run
+from gpsynth.run_files import recorder, write_result
 from gpsynth.synthesis import SynthesisResult
 
 CONTROLS = ("v", "omega")
@@ -90,7 +95,7 @@ def run_plan(
     The plan is written first. Raises FileError if that fails, when it has been printed; a failure after it is a warning
     on stderr.
     """
-    scenario, source = read_scenario(scenario_file), scenario_file.read_bytes()
+    scenario, source, before = read_scenario(scenario_file), scenario_file.read_bytes(), run.elapsed
     with status(f"planning {scenario.name}"):
         if via:
             report = plan_through(scenario, np.array(via), law, seed=seed, effort=effort, threads=threads)
@@ -102,44 +107,41 @@ def run_plan(
         ("its map", lambda: copy_map(scenario_file, run.folder), None),
         ("its scenario", lambda: write_bytes(scenario_beside(path), source), scenario_beside(path)),
         ("its picture", lambda: redraw(path), path.with_suffix(".png")),
-        ("its log", lambda: _log(run, f"plan {scenario.name}", report), None),
+        ("its log", lambda: _log(run, f"plan {scenario.name}", report, before), None),
     ):
         _besides(path, what, work, older)
     return path
 
 
-def write_drive_run(run: Run, scenario_file: Path, drive: Drive, law: Law, sensor: Sensor, seed: int) -> str:
-    """A drive into a run folder, with its picture and a copy of its scenario; a line that says what came of it."""
-    scenario, path = read_scenario(scenario_file), run.folder / "drive.json"
-    write_bytes(run.folder / "scenario.json", scenario_file.read_bytes())
-    copy_map(scenario_file, run.folder)
-    write_drive(drive, law, seed, path)
-    save_figure(draw_drive(scenario, drive, sensor), path.with_suffix(".png"))
-    check = drive.replay
-    return (
-        f"{scenario.name}: {status_of(drive)}, {check.trajectory[-1, 0]:.2f} s, clearance {check.clearance:.3f} m, "
-        f"planning {1e3 * np.median(drive.cycles):.0f} ms a cycle, at most {1e3 * drive.cycles.max():.0f} ms"
-    )
+def write_drive_run(run: Run, scenario_file: Path, drive: Drive, law: Law, sensor: Sensor, seed: int) -> Path:
+    """A drive into a run folder, with its picture and a copy of its scenario.
+
+    The drive is written first; a failure after that is a warning on stderr.
+    """
+    path = run.folder / DRIVE
+    write_drive(drive, law, sensor, seed, path)
+    _with_scenario(path, scenario_file)
+    _besides(path, "its picture", lambda: redraw_drive(path), path.with_suffix(".png"))
+    return path
 
 
-def write_fleet_run(run: Run, fleet_file: Path, report: FleetReport) -> str:
-    """The plans of a fleet into a run folder, with their picture; a sentence that says what came of it.
+def write_fleet_run(run: Run, fleet_file: Path, report: FleetReport) -> Path:
+    """The plans of a fleet into a run folder, with their picture and a copy of what they are for.
 
     The plans are written first; a failure after that is a warning on stderr.
     """
-    path = run.folder / "fleet.json"
+    path = run.folder / FLEET
     write_fleet(report, path)
-    copy, picture = run.folder / "scenario.json", path.with_suffix(".png")
-    _besides(path, "its scenario", lambda: write_bytes(copy, fleet_file.read_bytes()), copy)
-    if report.status != "planned":
-        picture.unlink(missing_ok=True)
-        return f"{report.status}, {report.reason}"
-    _besides(path, "its picture", lambda: save_figure(draw_fleet(report), picture), picture)
-    alone = max(map(arrival, report.alone))
-    return (
-        f"{report.status}, last arrival {max(report.arrivals):.2f} s, alone {alone:.2f} s, "
-        f"clearance of any two at least {report.clearance:.4f} m, planned in {report.planning_time:.1f} s"
-    )
+    _with_scenario(path, fleet_file)
+    _besides(path, "its picture", lambda: redraw_fleet(path), path.with_suffix(".png"))
+    return path
+
+
+def _with_scenario(path: Path, source: Path) -> None:
+    """A copy of the scenario, with its map, beside what is written."""
+    copy = scenario_beside(path)
+    _besides(path, "its map", lambda: copy_map(source, path.parent), None)
+    _besides(path, "its scenario", lambda: write_bytes(copy, source.read_bytes()), copy)
 
 
 def _keep(report: PlanReport, path: Path) -> None:
@@ -179,8 +181,9 @@ def load_steering_law(path: Path) -> Law:
     return law
 
 
-def _log(run: Run, stage: str, report: PlanReport) -> None:
-    """A line for each improvement: the cost of a plan is its arrival time (s)."""
+def _log(run: Run, stage: str, report: PlanReport, before: float) -> None:
+    """A line for each improvement of a plan begun after `before` (s): its cost is its arrival time (s)."""
     run.rewind(stage)
-    for number, (evaluations, arrival_time) in enumerate(report.history, start=1):
-        run.log(stage, generation=number, evaluations=evaluations, best_cost=arrival_time)
+    for number, (evaluations, arrival_time, seconds) in enumerate(report.history, start=1):
+        times = {"best_cost": arrival_time, "elapsed": before + seconds}
+        run.log(stage, generation=number, evaluations=evaluations, **times)

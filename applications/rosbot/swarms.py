@@ -1,6 +1,6 @@
 """The search behind a plan: swarms side by side for each way around the obstacles, the best of them followed up."""
 
-from collections.abc import Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, inf
@@ -13,7 +13,7 @@ from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import anywhere, nearby, repeated, schedules_along
 from applications.rosbot.vehicles import pose_plans
 from gpsynth.arrays import Floats
-from gpsynth.checks import check_number
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Particles, Plan, PlanSettings, Weights
@@ -50,6 +50,14 @@ class Effort:
     deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
 
     def __post_init__(self) -> None:
+        for name in ("points", "swarms", "attempts"):
+            check_whole(f"{name} of an effort", getattr(self, name), 1)
+        for name in ("chased", "refined", "added"):
+            check_whole(f"{name} of an effort", getattr(self, name), 0)
+        for name in ("scouts", "chasers", "refiners", "followers"):
+            check_kind(f"{name} of an effort", getattr(self, name), PlanSettings)
+        check_kind("weights of an effort", self.weights, Weights)
+        check_number("nearness of an effort", self.nearness)
         for name in ("rollouts", "deadline"):
             check_number(f"the {name} of an effort", getattr(self, name))
             if not getattr(self, name) > 0.0:
@@ -116,6 +124,7 @@ class Search:
     seed: int
     attempt: int = 0
     threads: int = 1
+    stop: Callable[[], bool] | None = None  # asked within the rounds; once it says so, the search ends
 
     def run(self) -> Iterator[Found]:
         """The best plan after every round of every stage."""
@@ -175,6 +184,7 @@ class Search:
                 budget=budget,
                 path=task.path,
                 threads=self.threads,
+                stop=self.stop,
             ):
                 yield Found(plan, law, spent + plan.evaluations)
             swarms += task.swarms(plan.particles)

@@ -7,7 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from applications.rosbot.certificate import certify
-from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
+from applications.rosbot.planner import PlanReport, plan_scenario
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.reachability import reachability
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import MOST, Scenario
@@ -15,6 +16,7 @@ from applications.rosbot.sensing import moved
 from applications.rosbot.swarms import Effort
 from applications.rosbot.vehicles import steered
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind
 from gpsynth.errors import ScenarioError
 from gpsynth.law import Law
 from gpsynth.planning import Plan
@@ -46,10 +48,12 @@ def plan_through(
 
     Each leg is planned by itself, in least time and with any heading at its end; the whole is replayed and certified.
     What `effort` allows is for all legs: each gets an equal share of what is left. Where a leg has no plan, the reason
-    says which. Raises ScenarioError if a
-    place is out of bounds or its tolerance not positive, and KeyboardInterrupt if Ctrl-C ends a leg.
+    says which. Raises ScenarioError if a place is out of bounds or its tolerance not positive, and KeyboardInterrupt if
+    Ctrl-C ends a leg.
     """
     through = check_via(scenario, via)
+    check_kind("law", law, Law, error=ScenarioError)
+    check_kind("effort", effort, Effort, error=ScenarioError)
     headings = _headings(scenario, through)
     legs, spent, now = list[_Leg](), 0, scenario
     places = tuple(map(tuple, through.tolist()))
@@ -71,7 +75,7 @@ def plan_through(
             raise KeyboardInterrupt
         if found.plan is None:
             where = f"via-point {number}" if number < len(through) else "the goal"
-            status, reason = found.status, f"on the way to {where}: {found.reason}"
+            status, reason = found.status, f"on the way to {where}: {found.reason.replace('the goal', where)}"
             if number and reachability(leg).status != "unreachable":
                 status = "not_found"  # too late is only what the legs so far have left no time for
             return replace(report, status=status, reason=reason, plan=None, law=None)
@@ -83,18 +87,20 @@ def plan_through(
 
 def check_via(scenario: Scenario, via: npt.ArrayLike) -> Floats:
     """The places as an array (m, 3); raises ScenarioError if one cannot be passed."""
+    check_kind("scenario", scenario, Scenario, error=ScenarioError)
     if scenario.model == "dynamic_unicycle":
-        raise ScenarioError("a leg begins at rest, so via-points are for robots without lags")
-    places = np.asarray(via, dtype=np.float64)
-    if places.ndim != 2 or places.shape[1] != 3 or not np.all(np.isfinite(places)):
-        raise ScenarioError(
-            f"via-points are rows of x, y and tolerance in m, all finite; got {places.tolist()}"
-        )
+        raise ScenarioError("via-points are for robots without lags")
+    try:
+        places = np.asarray(via, dtype=np.float64)
+    except (TypeError, ValueError):
+        places = np.empty(0)
+    if places.ndim != 2 or places.shape[1] != 3:
+        raise ScenarioError(f"via-points are rows of x, y and tolerance in m, got {via!r}")
     low, high = scenario.bounds[[0, 2]], scenario.bounds[[1, 3]]
     for number, (x, y, tolerance) in enumerate(places):
-        if np.any(np.abs(places[number]) > MOST):
+        if not np.all(np.abs(places[number]) <= MOST):
             raise ScenarioError(
-                f"via-point {number} is {places[number].tolist()}; expected numbers within ±{MOST:g}"
+                f"via-point {number} is {places[number].tolist()}; expected finite numbers within ±{MOST:g}"
             )
         if not tolerance > 0.0:
             raise ScenarioError(f"via-point {number} has tolerance {tolerance:g} m; expected more than 0")
@@ -168,7 +174,7 @@ def _joined(report: PlanReport, legs: Sequence[_Leg], via: Floats) -> PlanReport
         clearance=check.clearance,
     )
     plan = _as_one(last, legs, trajectory)
-    history = ((report.evaluations, plan.arrival_time),)
+    history = ((report.evaluations, plan.arrival_time, report.planning_time),)
     return replace(report, status="planned", plan=plan, replay=check, certificate=proof, history=history)
 
 

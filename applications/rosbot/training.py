@@ -8,8 +8,8 @@ import numpy as np
 from applications.rosbot.bounds import lower_bound
 from applications.rosbot.guides import Guide, direct_guides, guides_along
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import problem_of
 from applications.rosbot.polar_law import polar_law
+from applications.rosbot.problems import problem_of
 from applications.rosbot.reachability import reachability
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario

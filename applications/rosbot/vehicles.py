@@ -3,7 +3,7 @@
 A law for the unicycle drives all of them. Equilibrium points are poses: what further states a plant has are 0 there.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -57,6 +57,11 @@ def widened(poses: Floats, plant: Plant) -> Floats:
     return np.concatenate([poses, np.zeros((*poses.shape[:-1], further))], axis=-1)
 
 
+def first_state(scenario: Scenario, plant: Plant) -> Floats:
+    """The state (n,) that the scenario's robot starts in."""
+    return np.append(scenario.start, scenario.speeds)[: len(plant.state_names)]
+
+
 def steered(scenario: Scenario, controls: Floats) -> Floats:
     """The v and omega (m, 2) that a robot makes of the controls it is given."""
     if scenario.model != "car":
@@ -76,6 +81,7 @@ def pose_plans(
     budget: float,
     path: tuple[int, ...],
     threads: int = 1,
+    stop: Callable[[], bool] | None = None,
 ) -> Iterator[Plan]:
     """`gpsynth.planning.plans` for a plant with a pose and perhaps more, all points being poses (3,)."""
     plant = problem.plant
@@ -90,6 +96,7 @@ def pose_plans(
         budget=budget,
         path=path,
         threads=threads,
+        stop=stop,
     )
     return found if not len(further) else map(_narrowed, found)
 

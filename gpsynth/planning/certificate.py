@@ -12,11 +12,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from gpsynth.arrays import Floats
-from gpsynth.checks import check_number
-from gpsynth.distance_field import DistanceField
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 from gpsynth.intervals import enclose
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.obstacles import Obstacles
+from gpsynth.problem import Problem
 from gpsynth.simulation import Trajectory
 
 Box = tuple[Floats, Floats]  # lowest and highest values, (N, n) each
@@ -35,8 +35,13 @@ def certified_clearance(
     trajectory at its ticks, under the controls of the trajectory, circles moving as the problem says. How far the ticks
     are off is not proved: it is the error of the integrator, which half the step shows. Minus infinity where nothing
     can be said: the plant has operations without a rule, or no box holds its flow. `row` is that of the plant's
-    parameters. Raises ProblemError if the error is no number of at least 0.
+    parameters. Raises ProblemError if the error is no number of at least 0, or there is no such row.
     """
+    check_kind("problem", problem, Problem)
+    check_kind("trajectory", trajectory, Trajectory)
+    check_whole("row", row, 0)
+    if row >= len(problem.plant_parameters):
+        raise ProblemError(f"row is {row}; the problem has {len(problem.plant_parameters)} rows")
     check_number("error", error)
     if not 0.0 <= error < np.inf:
         raise ProblemError(f"error must be finite and at least 0, not {error}")
@@ -45,23 +50,31 @@ def certified_clearance(
     obstacles, names = problem.obstacles, problem.plant.state_names
     position = [names.index(name) for name in obstacles.position]
     poses = trajectory.x[:, position]
-    bend = _bends(problem, trajectory, error, row)[:, position]
+    low, high = (slope[:, position] for slope in _slopes(problem, trajectory, error, row))
+    bend, most = 0.25 * problem.period * (high - low), problem.period * np.maximum(np.abs(low), np.abs(high))
     rounding = ROUNDING * (np.abs(poses).sum(axis=1) + 1.0)
     lost = error + np.append(np.hypot(bend[:, 0], bend[:, 1]), 0.0) + rounding
-    nearest = _room(obstacles.bounds, poses[:, :2], lost)
+    gaps = [_room(obstacles.bounds, poses[:, :2], lost)]
     for circle in obstacles.body:
-        centers, turned = _turned(circle, poses, bend, error)
-        gaps = [_gap(*other, centers, lost + turned) for other in _discs(obstacles, trajectory.t)]
+        centers, turned = _turned(circle, poses, bend, most, error)
+        gaps += [
+            _gap(*other, centers, lost + turned) - circle[2] for other in _discs(obstacles, trajectory.t)
+        ]
         if obstacles.field is not None:
-            gaps.append(_gap_of_field(obstacles.field, centers, lost + turned))
-        nearest = min([nearest, *(gap - circle[2] for gap in gaps)])
-    return nearest
+            tails = np.vstack([centers[1:], centers[-1:]])
+            gaps.append(
+                float(np.min(obstacles.field.proved_along(centers, tails) - lost - turned)) - circle[2]
+            )
+    nearest = float(np.min(gaps))
+    return -np.inf if np.isnan(nearest) else nearest
 
 
-def _turned(circle: Floats, poses: Floats, bend: Floats, error: float) -> tuple[Floats, Floats]:
+def _turned(circle: Floats, poses: Floats, bend: Floats, most: Floats, error: float) -> tuple[Floats, Floats]:
     """The centers (N + 1, 2) of a circle of the body, and how much farther than its origin they are from their chords.
 
-    What turns by an angle of at most a is within a^2 / 8 of its chord, a share of its distance from the origin.
+    What turns uniformly by an angle of at most a is within a^2 / 8 of its chord, a share of its distance from the
+    origin; a heading that is off by its bend moves it by as much again. How far it turns is told by the slopes, not by
+    the ends: there whole turns are not seen.
     """
     ahead, left, _ = circle
     arm = float(np.hypot(ahead, left))
@@ -69,45 +82,46 @@ def _turned(circle: Floats, poses: Floats, bend: Floats, error: float) -> tuple[
         return poses[:, :2], np.zeros(len(poses))
     sine, cosine = np.sin(poses[:, 2]), np.cos(poses[:, 2])
     centers = poses[:, :2] + np.column_stack([ahead * cosine - left * sine, ahead * sine + left * cosine])
-    turn = np.remainder(np.diff(poses[:, 2]) + np.pi, 2.0 * np.pi) - np.pi
-    bent = np.append(bend[:, 2] + 0.125 * turn**2, 0.0)
+    bent = np.append(bend[:, 2] + 0.125 * most[:, 2] ** 2, 0.0)
     return centers, arm * (bent + error + ROUNDING * (1.0 + np.abs(poses[:, 2])))
 
 
-def _gap_of_field(field: DistanceField, centers: Floats, lost: Floats) -> float:
-    """The least distance of the chords from what a distance field is of, less what is lost."""
-    gaps = field.along(centers, np.vstack([centers[1:], centers[-1:]])) - lost
-    return float(np.min(gaps - ROUNDING * (np.abs(centers - field.corner).sum(axis=1) + 1.0)))
+def _discs(obstacles: Obstacles, times: Floats) -> Iterator[tuple[Floats, float, Floats]]:
+    """Of everything round the centers (N + 1, 2) at the ticks, in between which it goes straight, and the radius.
 
-
-def _discs(obstacles: Obstacles, times: Floats) -> Iterator[tuple[Floats, float]]:
-    """The centers (N + 1, 2) at the ticks and the radius of everything round; in between it goes straight."""
+    Besides the size (N + 1,) of what the centers are computed of, of which rounding takes a share.
+    """
     for x, y, vx, vy, radius in obstacles.circles:
-        yield [x, y] + times[:, np.newaxis] * [vx, vy], radius
+        size = abs(x) + abs(y) + times * (abs(vx) + abs(vy))
+        yield [x, y] + times[:, np.newaxis] * [vx, vy], radius, size
     if obstacles.tracks is not None:
-        yield from zip(obstacles.tracks.at(times), obstacles.tracks.radii, strict=True)
+        tracks = obstacles.tracks
+        for places, centers, radius in zip(tracks.places, tracks.at(times), tracks.radii, strict=True):
+            fastest = np.abs(np.diff(places, axis=0)).max(initial=0.0) / tracks.period
+            yield centers, radius, np.abs(centers).sum(axis=1) + 2.0 * times * fastest
 
 
-def _gap(others: Floats, radius: float, places: Floats, lost: Floats) -> float:
+def _gap(others: Floats, radius: float, size: Floats, places: Floats, lost: Floats) -> float:
     """The least distance of the chords from a disc, less what is lost, (N + 1,) for N periods and the last tick."""
     seen = places - others
     motion = np.vstack([np.diff(seen, axis=0), [[0.0, 0.0]]])
     square = np.sum(motion * motion, axis=1)
     share = -np.sum(seen * motion, axis=1) / np.where(square > 0.0, square, 1.0)
     nearest = seen + np.clip(share, 0.0, 1.0)[:, np.newaxis] * motion
-    size = np.abs(seen).sum(axis=1) + np.abs(others).sum(axis=1) + radius
-    return float(np.min(np.hypot(nearest[:, 0], nearest[:, 1]) - radius - lost - ROUNDING * size))
+    rounding = ROUNDING * (np.abs(seen).sum(axis=1) + size + radius)
+    return float(np.min(np.hypot(nearest[:, 0], nearest[:, 1]) - radius - lost - rounding))
 
 
 def _room(bounds: Floats, places: Floats, lost: Floats) -> float:
     """The least distance of the chords from the bounds; both ends of a chord lose what is lost on it."""
     lost = np.maximum(lost, np.concatenate([[0.0], lost[:-1]]))
     low, high = places - bounds[[0, 2]], bounds[[1, 3]] - places
-    return float(np.min(np.minimum(low, high).min(axis=1) - lost))
+    room = float(np.min(np.minimum(low, high).min(axis=1) - lost))
+    return room - ROUNDING * abs(room) if np.isfinite(room) else room
 
 
-def _bends(problem: Problem, trajectory: Trajectory, error: float, row: int) -> Floats:
-    """How far (N, n) each state can be from its chord; infinity where no box holds the flow."""
+def _slopes(problem: Problem, trajectory: Trajectory, error: float, row: int) -> Box:
+    """The lowest and highest slope (N, n) of each state over each period; infinite where no box holds the flow."""
     plant, step = problem.plant, problem.period
     states, times = trajectory.x[:-1], trajectory.t[:-1, np.newaxis]
     is_known = problem.hold and (problem.draws is None or not np.any(problem.draws.delay))
@@ -130,6 +144,5 @@ def _bends(problem: Problem, trajectory: Trajectory, error: float, row: int) -> 
             break
         wider = np.where(holds[:, np.newaxis], 0.0, 0.1 * (high - low) + SMALL)
         box = np.minimum(box[0], low - wider), np.maximum(box[1], high + wider)
-    slope = slopes(box)
-    bends: Floats = np.where(holds[:, np.newaxis], 0.25 * step * (slope[1] - slope[0]), np.inf)
-    return bends
+    slope, held = slopes(box), holds[:, np.newaxis]
+    return np.where(held, slope[0], -np.inf), np.where(held, slope[1], np.inf)

@@ -6,10 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.kernels.layout import Toll, readonly
 from gpsynth.law import Law
 from gpsynth.planning.settings import PlanSettings
+from gpsynth.rollouts import Rollouts
 from gpsynth.schedule import Schedule
 
 Flags = npt.NDArray[np.bool_]

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from gpsynth.arrays import Floats
-from gpsynth.checks import check_kind
+from gpsynth.arrays import Floats, shaped
+from gpsynth.checks import check_function, check_kind, check_number
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import Evaluator, check_law
 from gpsynth.law import Law
@@ -31,6 +31,7 @@ from gpsynth.optimizers import (
 )
 from gpsynth.planning.objective import TOUCHING, Objective
 from gpsynth.planning.settings import PlanSettings
+from gpsynth.planning.slices import Slices, Stop
 from gpsynth.planning.weights import weighted
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule, Schedules
@@ -92,6 +93,7 @@ def plan(  # noqa: PLR0913 names each choice as a keyword
     default `default_region`. `callback` is called after every round and stops the search by returning True. The same
     seed and path give the same plan for any number of threads. Raises ProblemError if the parts do not fit together.
     """
+    check_function("callback", callback, optional=True)
     found = plans(
         problem,
         law,
@@ -120,12 +122,15 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
     budget: float | None = None,
     path: tuple[int, ...] = (0,),
     threads: int = 1,
+    stop: Stop | None = None,
 ) -> Iterator[Plan]:
     """The best schedule after every round of `plan`, the first as soon as the initial schedules have been tried.
 
-    Whoever stops asking stops the search, and has the best plan so far.
+    Whoever stops asking stops the search, and has the best plan so far. `stop` is asked again and again within the
+    rounds; once it says so the search ends with the best plan so far.
     """
     _check(problem, law, settings, initial)
+    _check_keywords(problem, region, budget, path)
     problem = weighted(problem, settings.weights)
     evaluator = Evaluator(problem, threads=threads, margin=settings.margin)
     objective = Objective(evaluator, law, settings, budget or problem.horizon)
@@ -133,19 +138,31 @@ def plans(  # noqa: PLR0913 names each choice as a keyword
     limits = optimizer.limits if isinstance(optimizer, PSO) else None
     size = settings.particles * settings.swarms
     history: History = ((0, objective.budget),)
-    best, start, end = None, None, 0
+    best, start, end, costs = None, None, 0, Slices(objective, stop)
     for length in lengths(settings):
         end += size * length
-        found = minimize(objective, optimizer, seed=seed, path=path, budget=end, limits=limits, resume=start)
+        found = minimize(
+            costs,
+            optimizer,
+            seed=seed,
+            path=path,
+            budget=end,
+            limits=limits,
+            resume=start,
+            callback=lambda _: costs.is_over,
+        )
         latest = _plan(objective, found, history, best)
         before = objective
         if latest.is_admissible and latest.value < objective.budget:
             # Algorithm 1: T+ <- T_used, and with it the switching step
             objective = replace(objective, budget=max(latest.value, problem.period))
         history = (*history, (found.evaluations, objective.budget))
-        best = replace(latest, evaluations=found.evaluations, history=history)
+        best = replace(latest, evaluations=found.evaluations - costs.skipped, history=history)
         yield best
-        start = found.progress if objective is before else rescored(found, objective)
+        if costs.is_over:
+            return
+        costs.objective = objective
+        start = found.progress if objective is before else rescored(found, costs)
         end += start.evaluations - found.evaluations
 
 
@@ -242,7 +259,7 @@ def _particles(objective: Objective, state: PSOState | DifferentialEvolutionStat
     return Particles(best, np.array([state.best_cost]))
 
 
-def rescored(found: Result[Any, Floats], objective: Objective) -> Progress[Any]:
+def rescored(found: Result[Any, Floats], objective: Callable[[Floats], Floats]) -> Progress[Any]:
     """The same search under a new T+: what it remembers is scored anew."""
     state = found.state
     if isinstance(state, PSOState):
@@ -263,6 +280,7 @@ def _check(
     if len(problem.starts) != 1:
         raise ProblemError(f"a plan begins at one start; the problem has {len(problem.starts)}")
     check_law(problem, law)
+    check_kind("initial, the schedules to begin with,", initial, list, tuple, Schedules)
     given = [initial.points[0]] if isinstance(initial, Schedules) and len(initial) else []
     for schedule in () if isinstance(initial, Schedules) else initial:
         check_kind("an initial schedule", schedule, Schedule)
@@ -273,3 +291,15 @@ def _check(
                 f"an initial schedule has points of shape {points.shape}; "
                 f"expected ({settings.points}, {problem.starts.shape[1]})"
             )
+
+
+def _check_keywords(
+    problem: Problem, region: tuple[Floats, Floats] | None, budget: float | None, path: tuple[int, ...]
+) -> None:
+    check_kind("path", path, tuple)
+    if budget is not None:
+        check_number("budget", budget)
+        if not 0.0 < budget < np.inf:
+            raise ProblemError(f"budget must be a finite time above 0 s, not {budget}")
+    if region is not None:
+        shaped("region, lowest and highest points,", region, (2, problem.starts.shape[1]))

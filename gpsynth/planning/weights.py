@@ -10,8 +10,9 @@ import numpy as np
 from gpsynth.builder import bind
 from gpsynth.checks import check_kind, check_number
 from gpsynth.errors import ProblemError
+from gpsynth.obstacles import Obstacles
 from gpsynth.plant_parts import TIME
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
 from gpsynth.tracing import Names, inline, trace
 
 

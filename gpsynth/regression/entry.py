@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats
-from gpsynth.checks import check_names, check_number, check_whole
+from gpsynth.checks import check_kind, check_names, check_number, check_whole
 from gpsynth.errors import RegressionError
 from gpsynth.kernels.data_code import NAMES
 from gpsynth.program import NAME
@@ -35,6 +35,7 @@ def regress(
     evaluations: int = EVALUATIONS,
     seconds: float | None = None,
     seed: int = 0,
+    use_all_inputs: bool = False,
 ) -> RegressionResult:
     """Formulas for target (n,) or targets (n, k) from inputs (n, m), a front of size and error.
 
@@ -47,6 +48,9 @@ def regress(
     left, and parts of their formulas as columns (`gpsynth/regression/several.py:search_each`). Their fronts become one
     (`gpsynth/regression/joint.py:joined`): each formula of it has k outputs, and what two of them share is computed and
     counted once. `target_name` gives k names then, or begins them: y0, y1, ...
+
+    With `use_all_inputs` every formula of the front reads every input, and so do those of each of several targets: what
+    one lacks is added to it as a multiple, however small that comes out.
 
     Columns have the `names` given, or those of a DataFrame, or are called x0, x1, ... Raises RegressionError for what
     does not fit together.
@@ -63,12 +67,13 @@ def regress(
     given_names = getattr(inputs, "columns", None) if names is None else names
     labels, outputs = _names(given_names, target_name, rows.shape[1], targets.shape[1])
     begin = time.process_time()
-    rows, targets, given = merged(rows, targets, given)
-    found = search_each(rows, targets, given, wanted, budget=budget, seed=seed)
+    check_kind("use_all_inputs", use_all_inputs, bool, error=RegressionError)
+    data = merged(rows, targets, given)
+    found = search_each(data, wanted, budget=budget, seed=seed, use_all_inputs=use_all_inputs)
     front = joined([each.front for each in found])
     return RegressionResult(
         tuple(_formula(joint, labels, outputs) for joint in front),
-        front.index(choose(front, len(rows))),
+        front.index(choose(front, len(data[0]))),
         sum(each.evaluations for each in found),
         time.process_time() - begin,
         _history(found, outputs),

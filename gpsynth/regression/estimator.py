@@ -38,11 +38,13 @@ class SymbolicRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
         evaluations: int = EVALUATIONS,
         seconds: float | None = None,
         random_state: Any = 0,
+        use_all_inputs: bool = False,
     ) -> None:
         self.functions = functions
         self.evaluations = evaluations
         self.seconds = seconds
         self.random_state = random_state
+        self.use_all_inputs = use_all_inputs
 
     def fit(self, X: npt.ArrayLike, y: npt.ArrayLike, sample_weight: npt.ArrayLike | None = None) -> "Self":
         """Search formulas for y (n,) or (n, k) of X (n, m)."""
@@ -68,6 +70,7 @@ class SymbolicRegressor(RegressorMixin, BaseEstimator):  # type: ignore[misc]
                 evaluations=self.evaluations,
                 seconds=self.seconds,
                 seed=int(seed),
+                use_all_inputs=self.use_all_inputs,
             )
         except RegressionError as error:
             raise ValueError(str(error)) from error

@@ -1,10 +1,10 @@
 """The Pareto front of error and size."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from gpsynth.regression.expressions import Expression
+from gpsynth.regression.expressions import Expression, variables
 
 EXACT = 1e-20  # errors below are rounding
 
@@ -18,16 +18,21 @@ class Candidate(NamedTuple):
 
 
 class Front:
-    """The best candidate of each size that no smaller one beats."""
+    """The best candidate of each size that no smaller one beats.
 
-    def __init__(self) -> None:
+    With `made_of`, what inputs each column is made of, only of those that read all `needed` inputs.
+    """
+
+    def __init__(self, made_of: Sequence[frozenset[int]] = (), needed: int = 0) -> None:
         self._best: dict[int, Candidate] = {}
+        self._made_of, self._needed = made_of, needed
 
     def add(self, candidates: Iterable[Candidate]) -> None:
         """Keep what is better than everything of its size."""
         for candidate in candidates:
             known = self._best.get(candidate.size)
-            if candidate.error < (math.inf if known is None else known.error):
+            better = candidate.error < (math.inf if known is None else known.error)
+            if better and not self.missing(candidate.expression):
                 self._best[candidate.size] = candidate
 
     def admits(self, size: int, error: float) -> bool:
@@ -39,6 +44,13 @@ class Front:
             )
             and error < math.inf
         )
+
+    def missing(self, expression: Expression) -> list[int]:
+        """The inputs that are needed and not read."""
+        if not self._needed:
+            return []
+        read = frozenset[int]().union(*(self._made_of[column] for column in variables(expression)))
+        return sorted(frozenset(range(self._needed)) - read)
 
     def members(self) -> list[Candidate]:
         """From the smallest to the most accurate; errors below EXACT count as equal."""

@@ -13,8 +13,9 @@ import numpy as np
 
 from gpsynth import seeds
 from gpsynth.arrays import Floats
-from gpsynth.regression.expressions import Expression, evaluate, number, rewrite, size
-from gpsynth.regression.front import Candidate
+from gpsynth.errors import RegressionError
+from gpsynth.regression.expressions import Expression, evaluate, number, rewrite, size, variables
+from gpsynth.regression.front import Candidate, Front
 from gpsynth.regression.joint import choose, joined, operations
 from gpsynth.regression.library import LARGEST
 from gpsynth.regression.polish import data_of
@@ -34,12 +35,19 @@ class Found(NamedTuple):
 
 
 def search_each(
-    rows: Floats, targets: Floats, weights: Floats, functions: frozenset[str], *, budget: Budget, seed: int
+    data: tuple[Floats, Floats, Floats],
+    functions: frozenset[str],
+    *,
+    budget: Budget,
+    seed: int,
+    use_all_inputs: bool = False,
 ) -> list[Found]:
-    """The front of each target (n, k) over rows (n, m).
+    """The front of each target of data: rows (n, m), targets (n, k) and weights (n,).
 
-    Each may spend a k-th of the budget, and what those before it have left of theirs.
+    Each may spend a k-th of the budget, and what those before it have left of theirs. Raises RegressionError if all
+    inputs are to be used and there is nothing to explain.
     """
+    rows, targets, weights = data
     begin, spent, count = time.process_time(), 0, targets.shape[1]
     found: list[Found] = []
     chosen: list[Expression] = []
@@ -48,13 +56,17 @@ def search_each(
         parts = _parts(chosen, rows)
         columns = np.column_stack((rows, *evaluate(parts, rows))) if parts else rows
         library = min(LARGEST_LIBRARY, max(SMALLEST_LIBRARY, share.evaluations // 500))
-        state = State(data_of(columns, y, weights), functions, seeds.stream(seed), library)
+        inputs = [frozenset((column,)) for column in range(rows.shape[1])]
+        front = Front([*inputs, *map(variables, parts)], len(inputs) * use_all_inputs)
+        state = State(data_of(columns, y, weights), functions, seeds.stream(seed), library, front)
         if state.data.total > 0.0 and len(state.y) > 1:
             state.consider([number(float(state.y.mean()))], "constant")
             search(state, share)
-        front = [_written_out(each, parts, rows.shape[1]) for each in state.members()]
-        found.append(Found(front, state.evaluations, state.found))
-        chosen.append(choose(joined([front]), len(rows)).parts[0].expression)
+        elif use_all_inputs:
+            raise RegressionError("a formula cannot be asked to use all inputs: the target is constant")
+        members = [_written_out(each, parts, rows.shape[1]) for each in state.members()]
+        found.append(Found(members, state.evaluations, state.found))
+        chosen.append(choose(joined([members]), len(rows)).parts[0].expression)
         spent += state.evaluations
     return found
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from gpsynth.arrays import Floats
 from gpsynth.regression import linear
-from gpsynth.regression.expressions import Expression, evaluate, number
+from gpsynth.regression.expressions import Expression, evaluate, number, size, variable
 from gpsynth.regression.front import EXACT, Candidate, Front
 from gpsynth.regression.library import Library
-from gpsynth.regression.polish import HOPE, Data, polish
+from gpsynth.regression.polish import HOPE, Data, fit_numbers, polish
 from gpsynth.regression.selection import Columns, Subset, columns_of
 from gpsynth.regression.targets import Target
 
@@ -43,14 +43,19 @@ class State:
     """The state of a search; methods add to it."""
 
     def __init__(
-        self, data: Data, functions: frozenset[str], rng: np.random.Generator, library: int = 20_000
+        self,
+        data: Data,
+        functions: frozenset[str],
+        rng: np.random.Generator,
+        library: int = 20_000,
+        front: Front | None = None,
     ) -> None:
         self.data, self.functions, self.rng = data, functions, rng
         count = len(data.inputs)
         self.rows = np.sort(rng.permutation(count)[:ROWS])
         self.y: Floats = data.y[:count]
         self.library = library
-        self.front = Front()
+        self.front = front or Front()
         self.loosened: set[Expression] = set()
         self.evaluations = 0
         self.deadline = math.inf  # processor time
@@ -79,12 +84,21 @@ class State:
     ) -> list[Candidate]:
         """Polish formulas of y and put them into the front."""
         before = self.front.error
-        candidates = polish(expressions, self.data, self.front, iterations=iterations, hope=hope)
+        polished = polish(expressions, self.data, self.front, iterations=iterations, hope=hope)
+        candidates = self._completed(polished, iterations)
         self.front.add(candidates)
         self.evaluations += len(expressions)
         if self.front.error < before:
             self.found.append((self.evaluations, source, self.front.error))
         return candidates
+
+    def _completed(self, candidates: list[Candidate], iterations: int) -> list[Candidate]:
+        """The candidates, with a multiple of each input added that they need and do not read."""
+        missing = [(each.expression, self.front.missing(each.expression)) for each in candidates]
+        if not any(inputs for _, inputs in missing):
+            return candidates
+        whole = [_with_inputs(expression, inputs) for expression, inputs in missing]
+        return [Candidate(e, error, size(e)) for e, error in fit_numbers(whole, self.data, iterations)]
 
     def consider_sums(
         self, subsets: Sequence[Subset], expression: Callable[[int], Expression], target: Target, source: str
@@ -97,6 +111,12 @@ class State:
             if np.all(np.isfinite(terms)):
                 found.append(linear.sum_of(expressions, terms, target))
         self.consider(found, f"{source} of {target.name}")
+
+
+def _with_inputs(expression: Expression, inputs: Sequence[int]) -> Expression:
+    for column in inputs:
+        expression = ("add", expression, ("mul", number(0.0), variable(column)))
+    return expression
 
 
 def promising(subsets: Sequence[Subset], each: int = 2) -> list[Subset]:

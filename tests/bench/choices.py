@@ -15,8 +15,9 @@ import numpy as np
 
 from applications.rosbot.experiments import experiment
 from applications.rosbot.scenario_file import read_scenario
-from gpsynth.evaluate import Evaluator, instructions
+from gpsynth.evaluate import Evaluator
 from gpsynth.kernels.pack import pack
+from gpsynth.loop_arrays import instructions
 from gpsynth.planning import plan
 from tests.bench.setting import setting
 

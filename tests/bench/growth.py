@@ -12,9 +12,10 @@ import numpy as np
 
 from applications.rosbot.stabilizer import default_law, poses, stabilization
 from gpsynth.builder import Builder
-from gpsynth.evaluate import Evaluator, instructions
+from gpsynth.evaluate import Evaluator
 from gpsynth.kernels import machine, rollout
 from gpsynth.kernels.pack import pack
+from gpsynth.loop_arrays import instructions
 from gpsynth.program import Program
 from gpsynth.seeds import stream
 from tests.bench.measure import machine as processor

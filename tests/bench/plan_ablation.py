@@ -16,8 +16,8 @@ from types import MappingProxyType
 import numpy as np
 
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import PERIOD, problem_of
 from applications.rosbot.polar_law import HOT, SATURATING, SETTLING, polar_law
+from applications.rosbot.problems import PERIOD, problem_of
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import repeated, schedules_along

@@ -18,11 +18,12 @@ from unittest.mock import patch
 import numpy as np
 
 from applications.rosbot.figures import BLUE, GRAY, STYLE, save_figure
-from applications.rosbot.planner import plan_scenario, problem_of
+from applications.rosbot.planner import plan_scenario
+from applications.rosbot.problems import problem_of
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.stabilizer import default_law
-from gpsynth import evaluate
+from gpsynth import loop_arrays
 from gpsynth.arrays import Floats
 from gpsynth.evaluate import Evaluator
 from gpsynth.kernels.buckets import NONE, buckets
@@ -83,10 +84,10 @@ def cpus() -> int:
 @contextmanager
 def without_buckets():
     """All circles are looked at everywhere."""
-    evaluate._sorted_circles.cache_clear()
-    with patch("gpsynth.evaluate.buckets", lambda circles: NONE):
+    loop_arrays._sorted_circles.cache_clear()
+    with patch("gpsynth.loop_arrays.buckets", lambda circles: NONE):
         yield
-    evaluate._sorted_circles.cache_clear()
+    loop_arrays._sorted_circles.cache_clear()
 
 
 def by_obstacles() -> list[tuple[int, float, float, float]]:

@@ -22,8 +22,9 @@ from pathlib import Path
 import numpy as np
 
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
+from applications.rosbot.planner import PlanReport, plan_scenario
 from applications.rosbot.polar_law import HOT, SATURATING, polar_law
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.scenario_file import read_scenario
 from gpsynth.law import Law

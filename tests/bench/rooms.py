@@ -1,6 +1,7 @@
-"""`python -m tests.bench.rooms`: plans through the synthetic office, and what a distance field costs in rollouts.
+"""`python -m tests.bench.rooms`: plans and drives through the synthetic office, and what a distance field costs.
 
-Processor seconds of one core, kernels compiled before. `--seeds N` sets how many plans there are.
+Processor seconds of one core, kernels compiled before. `--seeds N` sets how many plans there are, `--drives N` how many
+drives among movers; 12 of them cross the shortest way at any angle, timed to meet the robot, and pass through walls.
 """
 
 import argparse
@@ -8,21 +9,31 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
 import applications.rosbot
-from applications.rosbot.planner import PlanReport, plan_scenario, problem_of
+from applications.rosbot import planner
+from applications.rosbot.crossings import JITTER, PACE, ROOM, SOONEST, mover
+from applications.rosbot.drive_file import status_of
+from applications.rosbot.loop import drive_scenario
+from applications.rosbot.planner import PlanReport, plan_scenario
+from applications.rosbot.problems import problem_of
 from applications.rosbot.reachability import reachability
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.scenario_file import read_scenario
 from applications.rosbot.stabilizer import default_law
 from applications.rosbot.swarms import Effort
+from gpsynth.arrays import Floats
 from gpsynth.evaluate import Evaluator
+from gpsynth.seeds import stream
 
 OFFICE = Path(applications.rosbot.__file__).parent / "scenarios" / "office.json"
 WITHIN = 2.0  # s
+MOVERS = 12
+DEADLINES = (0.1, 0.2, 0.5, 0.8, 1.0, 2.0)  # s
 LANES, POINTS, HORIZON = 256, 6, 12.0
 
 
@@ -74,6 +85,38 @@ def office(seed: int) -> str:
     )
 
 
+def busy(seed: int) -> Scenario:
+    """The office with MOVERS on its shortest way."""
+    scenario, rng = fresh(), stream(seed)
+    way, circles = routes(scenario, margin=0.05)[0], list[Floats]()
+    while len(circles) < MOVERS:
+        driven = float(rng.uniform(0.05, 0.95) * way.length)
+        when = max(SOONEST, driven / PACE + JITTER * rng.normal())
+        circle = mover(way.poses(np.array([driven]))[0, :2], when, rng)
+        if np.hypot(*(circle[:2] - scenario.start[:2])) - circle[4] - scenario.radius >= ROOM:
+            circles.append(circle)
+    return replace(scenario, circles=np.array(circles))
+
+
+def driven(scenario: Scenario, seed: int) -> str:
+    """One drive: what came of it, and how long its cycles took."""
+    run = drive_scenario(scenario, default_law(), seed=seed)
+    cycles, what = 1e3 * np.quantile(run.cycles, (0.5, 0.99, 1.0)), status_of(run)
+    return (
+        f"{len(scenario.circles):6} {seed:4} {what:>10} {run.replay.arrival_time:8.2f} {run.replay.clearance:8.3f} "
+        + " ".join(f"{each:8.1f}" for each in cycles)
+    )
+
+
+def overrun(deadline: float, seed: int) -> str:
+    """How much later than its deadline (s) a search ends, processor time being its clock."""
+    clock, planner.time = planner.time, SimpleNamespace(perf_counter=time.process_time)
+    report = plan_scenario(fresh(), [default_law()], seed=seed, effort=Effort(deadline=deadline))
+    planner.time = clock
+    late = report.planning_time - deadline
+    return f"{deadline:10.2f} {seed:4} {report.status:>10} {report.evaluations:8} {1e3 * late:8.1f}"
+
+
 def rollouts() -> str:
     """The time of a lane's period without obstacles, beside a field, and among circles."""
     scenario, rng = fresh(), np.random.default_rng(1)
@@ -97,15 +140,26 @@ def rollouts() -> str:
 
 
 def main() -> None:
-    """Print all three tables."""
+    """Print all tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--drives", type=int, default=8)
     asked = parser.parse_args()
     plan_scenario(fresh(), [default_law()], effort=Effort(rollouts=1_000))  # compiles
     print(parts(), "", rollouts(), "", sep="\n")
     print(f"seed  first s  arrival  after {WITHIN:g} s    final  total s  clear mm")
     for seed in range(asked.seeds):
-        print(office(seed))
+        print(office(seed), flush=True)
+    print("\ndeadline s seed     status rollouts  late ms")
+    for deadline in DEADLINES:
+        for seed in range(2):
+            print(overrun(deadline, seed), flush=True)
+    drive_scenario(replace(busy(0), time_limit=0.3), default_law())  # compiles
+    print("\nmovers seed     status  arrival  clear m  median     p99      max ms a cycle")
+    for seed in range(3):
+        print(driven(fresh(), seed), flush=True)
+    for seed in range(asked.drives):
+        print(driven(busy(seed), seed), flush=True)
 
 
 if __name__ == "__main__":

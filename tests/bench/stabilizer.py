@@ -23,10 +23,11 @@ from applications.rosbot.stabilizer import (
     synthesize_stabilizer,
 )
 from gpsynth.draws import Draws, crossed, random_draws
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
 from gpsynth.problem import Problem
 from gpsynth.proportions import lower_bound
+from gpsynth.rollouts import Rollouts
 from gpsynth.seeds import stream
 from gpsynth.simulation import simulate
 

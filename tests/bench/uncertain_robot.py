@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from applications.rosbot.loop import drive_scenario
-from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
+from applications.rosbot.planner import PlanReport, plan_scenario
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.replanning import Replanning
 from applications.rosbot.replay import Replay, replay
 from applications.rosbot.scenario import Scenario

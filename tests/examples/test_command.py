@@ -3,7 +3,7 @@
 import pytest
 
 from examples.command import Finding, command
-from gpsynth.cli import run
+from gpsynth.command_line import run
 
 
 def test_a_folder_that_cannot_be_made_is_said_before_the_search(tmp_path, capsys) -> None:

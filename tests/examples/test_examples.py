@@ -11,7 +11,7 @@ from scipy.integrate import simpson, solve_ivp
 
 from examples import cart_pole, coupled_oscillators, landau_oscillator, planar_quadrotor
 from gpsynth.arrays import Floats
-from gpsynth.cli import run
+from gpsynth.command_line import run
 from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
 from gpsynth.objective import costs_of

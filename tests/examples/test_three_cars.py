@@ -8,7 +8,7 @@ from examples import car_like, parking, swing_up, three_cars
 from examples.rectangles import overlap
 from gpsynth.arrays import Floats
 from gpsynth.builder import Builder
-from gpsynth.cli import run
+from gpsynth.command_line import run
 from tests.bench.three_cars_contact import body, common_area
 
 

@@ -5,11 +5,12 @@ import pytest
 
 from gpsynth.arrays import Floats
 from gpsynth.builder import Builder
-from gpsynth.evaluate import Evaluator, instructions
+from gpsynth.evaluate import Evaluator
 from gpsynth.kernels.layout import Code, Rows
 from gpsynth.kernels.machine import SINE_AND_COSINE
 from gpsynth.kernels.pack import pack
 from gpsynth.kernels.pairs import ABS, FIRST_NUMBERS, JOINED
+from gpsynth.loop_arrays import instructions
 from gpsynth.operations import CODES, OPERATIONS
 from gpsynth.plant import Plant
 from gpsynth.problem import Problem

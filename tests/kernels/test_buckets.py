@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gpsynth import evaluate
+from gpsynth import loop_arrays
 from gpsynth.evaluate import Evaluator
 from gpsynth.kernels import buckets as broad
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.obstacles import Obstacles
+from gpsynth.problem import Problem
 from gpsynth.seeds import stream
 from tests.test_planning import point_robot
 
@@ -66,14 +67,14 @@ def test_rollouts_are_the_same_to_the_last_bit_as_without(movers, monkeypatch):
     points = rng.uniform(-4.0, 14.0, (300, 3, 2))  # beyond the grid as well
     dwell = rng.uniform(0.0, 3.0, (300, 3))
     found = Evaluator(problem, margin=0.05).of_schedules(law, points, dwell)
-    monkeypatch.setattr(evaluate, "buckets", lambda circles: broad.NONE)
-    evaluate._sorted_circles.cache_clear()
+    monkeypatch.setattr(loop_arrays, "buckets", lambda circles: broad.NONE)
+    loop_arrays._sorted_circles.cache_clear()
     try:
         everywhere = Evaluator(problem, margin=0.05)
         assert len(everywhere.world.buckets.firsts) == 0
         expected = everywhere.of_schedules(law, points, dwell)
     finally:
-        evaluate._sorted_circles.cache_clear()
+        loop_arrays._sorted_circles.cache_clear()
     assert (found.exposure > 0.0).any()
     for name in ("clearance", "exposure", "depth", "final"):
         assert np.array_equal(getattr(found, name), getattr(expected, name))

@@ -7,9 +7,11 @@ import pytest
 
 from gpsynth.arrays import Floats
 from gpsynth.distance_field import field_of_cells
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
+from gpsynth.obstacles import Obstacles
 from gpsynth.plant import Plant
-from gpsynth.problem import Obstacles, Problem
+from gpsynth.problem import Problem
+from gpsynth.rollouts import Rollouts
 from gpsynth.tracing import trace
 
 HORIZON, PERIOD = 4.0, 0.1

@@ -9,11 +9,12 @@ from scipy.integrate import solve_ivp
 
 from gpsynth.arrays import Floats
 from gpsynth.builder import Builder
-from gpsynth.evaluate import Evaluator, Rollouts
+from gpsynth.evaluate import Evaluator
 from gpsynth.law import Law
 from gpsynth.plant import Plant
 from gpsynth.problem import Method, Problem
 from gpsynth.program import Program
+from gpsynth.rollouts import Rollouts
 from gpsynth.tracing import trace
 
 GAIN = np.array([[0.8, 0.6]])

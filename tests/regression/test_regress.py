@@ -149,3 +149,37 @@ def test_data_that_say_little_give_a_formula_all_the_same(inputs, target):
 def test_a_seed_that_is_none_is_named():
     with pytest.raises(RegressionError, match="an integer of at least 0, not -1"):
         gpsynth.regress(np.ones((3, 1)), np.ones(3), seed=-1)
+
+
+@pytest.mark.parametrize("functions", [("add", "mul", "sin"), ("mul", "sin")])
+def test_every_formula_reads_all_inputs_where_that_is_asked_for(functions):
+    rng = np.random.default_rng(8)
+    inputs = rng.uniform(0.5, 2.0, (120, 3))
+    y = inputs[:, 0] * np.sin(inputs[:, 1]) + 0.05 * rng.standard_normal(120)
+    free = gpsynth.regress(inputs, y, functions=functions, evaluations=60_000)
+    bound = gpsynth.regress(inputs, y, functions=functions, evaluations=60_000, use_all_inputs=True)
+    assert not all("x2" in str(formula) for formula in free.front)
+    for formula in bound.front:
+        assert all(name in str(formula) for name in ("x0", "x1", "x2"))
+    assert bound.front[-1].error <= 1.05 * np.mean((y - inputs[:, 0] * np.sin(inputs[:, 1])) ** 2) / np.var(y)
+
+
+def test_formulas_of_several_targets_read_all_inputs_each():
+    inputs = np.random.default_rng(9).uniform(0.5, 2.0, (100, 3))
+    rate = inputs[:, 0] * inputs[:, 1] / inputs[:, 2]
+    found = gpsynth.regress(
+        inputs, np.column_stack([rate, rate + inputs[:, 2]]), evaluations=60_000, use_all_inputs=True
+    )
+    assert found.best.error < 1e-20
+    for formula in found.front:
+        for output in formula.program.names:
+            assert {"x0", "x1", "x2"} <= read_by(formula.program, output)
+
+
+def read_by(program, output):
+    """The names of the inputs that an output hangs on."""
+    moved = np.random.default_rng(10).uniform(0.5, 2.0, (1, len(program.inputs)))
+    column = program.names.index(output)
+    changes = moved + 0.1 * np.eye(len(program.inputs))
+    values = program(np.vstack([moved, changes]))[:, column]
+    return {name for name, value in zip(program.inputs, values[1:], strict=True) if value != values[0]}

@@ -8,8 +8,9 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from applications.rosbot import planner
+from applications.rosbot.approaches import TIGHT
 from applications.rosbot.arcs import arcs
-from applications.rosbot.certificate import TIGHT, certify
+from applications.rosbot.certificate import certify
 from applications.rosbot.model import unicycle
 from applications.rosbot.plan_file import plan_document
 from applications.rosbot.planner import Effort, plan_scenario

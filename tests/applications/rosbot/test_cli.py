@@ -143,6 +143,9 @@ def test_a_plan_can_be_replayed(capsys, scenario_file, law_file, tmp_path, obsta
     assert (out / "scenario.json").read_bytes() == path.read_bytes()
     assert (out / "plan.png").read_bytes().startswith(b"\x89PNG")
     assert read_progress(out)[-1]["stage"] == "plan room"
+    elapsed = [entry["elapsed"] for entry in read_progress(out)]
+    assert elapsed == sorted(elapsed)
+    assert elapsed[-1] - elapsed[0] < plan["planning_time"]  # when it was found, not when it was written
 
 
 @pytest.mark.slow
@@ -183,13 +186,41 @@ def test_a_drive_among_movers_can_be_replayed(capsys, scenario_file, law_file, t
     assert len(drive["courses"]) == math.ceil(len(drive["speeds"]) / 2)
     assert f"room: arrived, {drive['arrival_time']:.2f} s" in capsys.readouterr().out
     assert (out / "drive.png").read_bytes().startswith(b"\x89PNG")
-    assert (out / "scenario.json").read_bytes() == path.read_bytes()
+    assert (out / "scenario_drive.json").read_bytes() == path.read_bytes()
+
+
+def test_a_robot_that_is_not_driven_leaves_nothing(capsys, scenario_file, law_file, tmp_path):
+    car, out = scenario_file(model="car", robot=SCENARIO["robot"] | {"turning_radius": 0.5}), tmp_path / "out"
+    _fails(
+        capsys,
+        "drive",
+        car,
+        "--out",
+        out,
+        "--law",
+        law_file,
+        sentence=["the robot is a car; the loop drives"],
+    )
+    assert not out.exists()
 
 
 def test_a_drive_that_does_not_arrive_is_4(scenario_file, law_file, tmp_path):
     late = scenario_file(time_limit=0.5)
     assert _run("drive", late, "--out", tmp_path / "out", "--law", law_file) == 4
     assert json.loads((tmp_path / "out" / "drive.json").read_text())["status"] == "late"
+
+
+def test_a_drive_to_an_enclosed_goal_does_not_set_off_and_is_3(capsys, scenario_file, law_file, tmp_path):
+    path, out = scenario_file(obstacles=[*RING, {**CIRCLE, "vx": 0.1}]), tmp_path / "out"
+    assert _run("drive", path, "--out", out, "--law", law_file) == 3
+    drive = json.loads((out / "drive.json").read_text())
+    assert (drive["status"], drive["arrival_time"]) == ("unreachable", None)
+    assert drive["speeds"] == drive["courses"] == []
+    assert "shut the goal off from the start" in drive["reason"]
+    assert drive["reason"] in capsys.readouterr().out
+    assert drive["trajectory"] == [[0.0, *SCENARIO["start"]]]
+    assert (out / "drive.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "scenario_drive.json").read_bytes() == path.read_bytes()
 
 
 @pytest.mark.parametrize(
@@ -520,7 +551,7 @@ def test_a_pipe_is_no_plan_and_is_not_waited_for(capsys, tmp_path):
 
 
 def test_a_folder_without_a_run_is_one_sentence(capsys, tmp_path):
-    _fails(capsys, "show", tmp_path, sentence=["neither a plan.json nor a law.json"])
+    _fails(capsys, "show", tmp_path, sentence=["none of law.json, plan.json, drive.json and fleet.json"])
     _fails(capsys, "show", tmp_path / "nowhere.json", sentence=["does not exist"])
 
 

@@ -13,16 +13,16 @@ SCHEDULE = Schedule([[1.0, 0.5, 0.0], [2.0, -0.5, 0.1], [3.0, 0.0, 0.0]], [0.7, 
 
 
 def test_what_is_left_of_a_course_has_the_same_targets():
-    course = Course.of(SCHEDULE, 5)
-    later = Course.of(course.remainder(0.9)[0], 5)
+    course = Course.of(SCHEDULE, GOAL, 5)
+    later = Course.of(course.remainder(0.9)[0], GOAL, 5)
     assert len(later.schedule.dwell) == 5
     for time in np.arange(0.0, 2.0, 0.05):
-        assert np.allclose(later.target(time, GOAL), course.target(time + 0.9, GOAL))
-    assert np.array_equal(later.target(1.4, GOAL), GOAL)
+        assert np.allclose(later.target(time), course.target(time + 0.9))
+    assert np.array_equal(later.target(1.4), GOAL)
 
 
 def test_to_stand_still_is_a_course():
-    assert np.array_equal(Course.of(standing(POSE), 4).target(1.0, GOAL), POSE)
+    assert np.array_equal(Course.of(standing(POSE), GOAL, 4).target(1.0), POSE)
 
 
 def test_alternatives_wait_retreat_go_straight_and_pass_on_both_sides():

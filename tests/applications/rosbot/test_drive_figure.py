@@ -13,13 +13,18 @@ from applications.rosbot.sensing import Sensor
 from applications.rosbot.stabilizer import default_law
 from gpsynth.plotting import ORANGE, PALE
 
+
+def ways(drive):
+    return [course.schedule.points for course in drive.courses]
+
+
 LEAVING, RESTING = [0.0, 2.7, 0.0, 0.4, 0.25], [9.0, 0.0, 0.0, 0.0, 0.35]
 
 
 def test_circles_are_where_they_then_are_and_pale_once_out_of_sight():
     scene = Scenario([0.0, 0.0, 0.0], [3.0, 0.0, 0.0], circles=[LEAVING, RESTING], time_limit=2.0)
     drive = drive_scenario(scene, default_law(), settings=None)
-    figure = draw_drive(scene, drive, Sensor())
+    figure = draw_drive(scene, drive.replay.trajectory, ways(drive), Sensor())
     colors = []
     for axes, instant in zip(figure.axes[:INSTANTS], np.linspace(0.0, 2.0, INSTANTS), strict=True):
         assert axes.get_title() == f"{instant:.1f} s"
@@ -39,7 +44,7 @@ def test_a_room_and_all_of_the_body_are_drawn_and_count():
     room = Room(polygons=(block,), segments=np.array([[-1.0, -0.4, 2.0, -0.4]]))
     scene = Scenario([0.0, 0.0, 0.0], [3.0, 0.0, 0.0], footprint=body, room=room, time_limit=0.2)
     drive = drive_scenario(scene, default_law(), settings=None)
-    axes, *_, below = draw_drive(scene, drive, Sensor()).axes
+    axes, *_, below = draw_drive(scene, drive.replay.trajectory, ways(drive), Sensor()).axes
     centers = [patch.center for patch in axes.patches if getattr(patch, "radius", None) == pytest.approx(0.1)]
     assert np.allclose(centers, [[0.2, 0.0], [-0.1, 0.0]])
     assert any(patch.get_path().vertices[:3].tolist() == block.tolist() for patch in axes.patches)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from applications.rosbot.approaches import TIGHT
 from applications.rosbot.arcs import arcs
-from applications.rosbot.encounters import TIGHT, least_distance
+from applications.rosbot.encounters import least_distance
 from applications.rosbot.others import Other, held_until, poses_at, tracks_of
 from applications.rosbot.replay import drive
 from tests.bench.fleets import path_of, random_pairs, sampled

@@ -11,7 +11,8 @@ from applications.rosbot.certificate import certify
 from applications.rosbot.fleet import FleetEffort, plan_fleet
 from applications.rosbot.fleet_search import other_of
 from applications.rosbot.others import Other
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario
+from applications.rosbot.planner import Effort, plan_scenario
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.replay import drive, replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.stabilizer import default_law

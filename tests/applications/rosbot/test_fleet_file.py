@@ -88,7 +88,7 @@ def test_the_command_writes_plans_that_anybody_can_check(quick, tmp_path, capsys
     assert capsys.readouterr().out.startswith("two: planned, last arrival ")
     found = json.loads((tmp_path / "run" / "fleet.json").read_text())
     assert (tmp_path / "run" / "fleet.png").read_bytes().startswith(b"\x89PNG")
-    assert json.loads((tmp_path / "run" / "scenario.json").read_text()) == FLEET
+    assert json.loads((tmp_path / "run" / "scenario_fleet.json").read_text()) == FLEET
     paths = []
     for own, plan in zip(FLEET["robots"], found["robots"], strict=True):
         begins = plan["control_period"] * np.arange(len(plan["controls"]))

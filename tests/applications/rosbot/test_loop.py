@@ -6,10 +6,11 @@ import pytest
 from applications.rosbot.crossings import crossing
 from applications.rosbot.loop import CYCLE, drive_scenario
 from applications.rosbot.model import unicycle
-from applications.rosbot.planner import PERIOD, problem_of
 from applications.rosbot.polar_law import polar_law
+from applications.rosbot.problems import PERIOD, problem_of
 from applications.rosbot.replanning import Replanning
 from applications.rosbot.replay import replay
+from applications.rosbot.room import Room
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.sensing import Sensor
 from applications.rosbot.simulated_robot import UNCERTAIN
@@ -99,6 +100,36 @@ def test_limits_of_the_scenario_hold():
     assert np.all((speeds >= [-0.1, -0.8]) & (speeds <= [0.3, 0.6]))
 
 
+def test_a_robot_with_lags_plans_on_from_the_speeds_it_has():
+    """Were it to plan from rest, all courses would promise to be late by what it takes to come to full speed."""
+    lags = scene(model="dynamic_unicycle", goal=[5.0, 0.5, 0.0])
+    run = drive_scenario(lags, LAW)
+    assert (run.arrives, run.is_safe) == (True, True)
+    promised = [number * CYCLE + course.arrival_time for number, course in enumerate(run.courses)]
+    assert promised[len(promised) // 2] == pytest.approx(run.replay.arrival_time, abs=0.1)
+
+
+def test_a_goal_that_is_shut_off_by_what_rests_is_not_set_off_for():
+    walls = Room(segments=np.array([[1.5, -9.0, 1.5, 9.0]]))
+    shut = scene(room=walls, circles=[[0.0, 1.0, 0.1, 0.0, 0.2]], bounds=[-1.0, 4.0, -2.0, 2.0])
+    run = drive_scenario(shut, LAW)
+    assert "no route leads through the room" in run.unreachable
+    assert (len(run.applied), run.courses, run.arrives) == (0, (), False)
+    assert drive_scenario(shut, LAW, schedule=Schedule([shut.goal], [1.0]), settings=None).unreachable == ""
+
+
+def test_a_far_goal_in_a_room_is_driven_to_along_the_way_there():
+    """Around a wall, with a mover on the way; the courses lead to places before the goal until it is near."""
+    walls = Room(segments=np.array([[0.0, -4.0, 0.0, 4.2]]))
+    hall = {"bounds": [-4.0, 4.0, -4.0, 6.0], "room": walls, "circles": [[-2.5, 3.0, 0.2, 0.0, 0.25]]}
+    run = drive_scenario(scene(start=[-1.0, 0.0, 1.5], goal=[1.0, 0.0, -1.5], **hall), LAW)
+    assert (run.arrives, run.is_safe) == (True, True)
+    assert run.replay.arrival_time < 25.0  # the taut string takes 17.4 s, and the mover is on it for some
+    goals = np.array([course.goal for course in run.courses[1:]])
+    assert np.array_equal(goals[-1], [1.0, 0.0, -1.5])
+    assert goals[0, 1] > 1.5 > goals[20, 1] > 0.0
+
+
 def test_a_late_robot_is_told():
     run = drive_scenario(scene(time_limit=1.0), LAW)
     assert (run.arrives, run.is_safe) == (False, True)
@@ -109,6 +140,10 @@ def test_a_late_robot_is_told():
 def test_mistakes_are_told():
     with pytest.raises(ScenarioError, match="10 circles move; the sensor can tell 3 apart"):
         drive_scenario(crossing(0), LAW, sensor=Sensor(most=3))
+    with pytest.raises(ScenarioError, match="the robot is a car"):
+        drive_scenario(scene(model="car", turning_radius=0.5), LAW)
+    with pytest.raises(ScenarioError, match="begins at the speeds"):
+        scene(speeds=(0.1, 0.0))
     with pytest.raises(ScenarioError, match="expected 0 <= least <= margin"):
         Replanning(margin=0.01)
     with pytest.raises(ScenarioError, match=r"the margin is -0\.1 m"):

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,13 +13,15 @@ from applications.rosbot.following import nearest_time
 from applications.rosbot.guides import direct_guides, guides_along
 from applications.rosbot.model import unicycle, wheel_coupled
 from applications.rosbot.plan_file import plan_document, write_plan
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario, problem_of
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import HOT, SATURATING, polar_law
+from applications.rosbot.problems import PERIOD, problem_of
 from applications.rosbot.replay import replay
 from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import along, nearby, repeated, schedules_along
 from gpsynth.errors import ScenarioError
+from gpsynth.evaluate import Evaluator
 from gpsynth.planning import PlanSettings
 from gpsynth.seeds import stream
 
@@ -70,6 +73,9 @@ def test_a_plan_is_near_its_bound(report):
 def test_the_history_ends_at_the_plan(report):
     assert report.history[-1][1] == report.plan.arrival_time
     assert report.history[-1][0] <= report.evaluations
+    seconds = [each[2] for each in report.history]
+    assert 0.0 < seconds[0] <= seconds[-1] <= report.planning_time
+    assert sorted(seconds) == seconds
 
 
 def test_the_same_seed_gives_the_same_plan_for_any_number_of_threads(report):
@@ -135,6 +141,26 @@ def test_a_number_of_rollouts_or_a_deadline_ends_the_search(report):
     now = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=1e-9))
     assert now.ended == "deadline"
     assert now.evaluations < 300
+
+
+def test_a_deadline_breaks_a_round_off(monkeypatch, report):
+    """By a clock that rollouts alone move on, 1 ms each: a generation of scouts takes 0.2 s, a slice 0.128 s."""
+    now, roll = [0.0], Evaluator.of_schedules
+
+    def timed(evaluator, law, points, *rest, **options):
+        now[0] += 1e-3 * len(points)
+        return roll(evaluator, law, points, *rest, **options)
+
+    monkeypatch.setattr(Evaluator, "of_schedules", timed)
+    monkeypatch.setattr(planner, "time", SimpleNamespace(perf_counter=lambda: now[0]))
+    for deadline in np.arange(1.3, 3.5, 0.3):
+        ended = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=deadline))
+        assert (ended.status, ended.ended) == ("planned", "deadline")
+        assert ended.replay.solves
+        assert abs(ended.planning_time - deadline) <= 0.14  # a slice, and a rollout of what is best
+        assert ended.evaluations <= 1e3 * ended.planning_time
+    late = plan_scenario(scene(), [law()], seed=1, effort=replace(QUICK, deadline=1e6))
+    assert np.array_equal(late.plan.schedule.points, report.plan.schedule.points)
 
 
 @pytest.mark.parametrize("wrong", [{"deadline": np.nan}, {"deadline": 0.0}, {"rollouts": -1}])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.path import Path as Outline
 
+from applications.rosbot.gaps import gaps_to_room, least_gap_to_room
 from applications.rosbot.room import Room
 from gpsynth.errors import ScenarioError
 
@@ -85,3 +86,19 @@ def test_whole_numbers_are_numbers():
     whole = Room(segments=np.array([[0, 0, 2, 0]]), polygons=(np.array([[0, 1], [1, 1], [1, 2]]),))
     same = Room(segments=1.0 * whole.segments, polygons=(1.0 * whole.polygons[0],))
     assert np.array_equal(whole.field(0.05).squares, same.field(0.05).squares)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_least_gap_along_a_path_is_that_of_all_its_poses(seed):
+    """Of bodies that turn, through and beside cells, polygons and segments."""
+    rng = np.random.default_rng(seed)
+    room = (
+        Room(cells(seed), (-0.5, 0.25), 0.1, (HOUSE,), SEGMENTS)
+        if seed % 2
+        else Room(cells(seed), width=0.05)
+    )
+    body = np.array([[0.0, 0.0, 0.15], [0.3, -0.1, 0.1]])[: 1 + seed % 2]
+    for count in (1, 2, 21, 1234):
+        steps = rng.normal(size=(count, 3)) * [2e-3, 2e-3, 5e-3] + rng.normal(size=3) * 2e-3
+        path = np.append(rng.uniform(-1.5, 3.5, 2), 0.0) + np.cumsum(steps, axis=0)
+        assert least_gap_to_room(body, room, path) == gaps_to_room(body, room, path).min()

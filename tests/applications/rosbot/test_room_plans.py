@@ -12,13 +12,14 @@ from applications.rosbot.footprint import placed, rectangle_circles
 from applications.rosbot.map_file import read_map
 from applications.rosbot.model import unicycle
 from applications.rosbot.office import office
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import SATURATING, polar_law
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.replay import drive
 from applications.rosbot.room import Room
+from applications.rosbot.saved import read_plan
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.scenario_file import read_scenario
-from applications.rosbot.show import read_plan
 from gpsynth.planning import PlanSettings
 
 OFFICE = Path(applications.rosbot.__file__).parent / "scenarios" / "office.json"
@@ -128,7 +129,7 @@ def test_a_drive_keeps_the_map_too(tmp_path):
     for name in ("office.yaml", "office.png"):
         (tmp_path / name).write_bytes(OFFICE.with_name(name).read_bytes())
     assert main(["drive", str(short), "--out", str(tmp_path / "out")]) == 4
-    again = read_scenario(tmp_path / "out" / "scenario.json")
+    again = read_scenario(tmp_path / "out" / "scenario_drive.json")
     assert np.array_equal(again.room.cells, read_scenario(short).room.cells)
 
 

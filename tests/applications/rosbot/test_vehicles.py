@@ -8,8 +8,9 @@ from scipy.integrate import solve_ivp
 
 from applications.rosbot.certificate import certify
 from applications.rosbot.model import FAMILY, car, dynamic_unicycle, unicycle
-from applications.rosbot.planner import PERIOD, Effort, plan_scenario
+from applications.rosbot.planner import Effort, plan_scenario
 from applications.rosbot.polar_law import SATURATING, polar_law
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.replay import replay
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.stabilizer import default_law
@@ -43,7 +44,7 @@ def integrated(scenario: Scenario, controls: np.ndarray) -> np.ndarray:
         "dynamic_unicycle": dynamic_unicycle(),
         "car": car(turning_radius=scenario.turning_radius or 1.0),
     }[scenario.model]
-    state = np.concatenate([scenario.start, np.zeros(len(plant.state_names) - 3)])
+    state = np.append(scenario.start, scenario.speeds)[: len(plant.state_names)]
     poses = [state]
     for control in controls:
         rates = lambda _, x, u=control: plant.dynamics(np.array([[*x, *u, 0.0]]), plant.nominal)[0]  # noqa: E731
@@ -73,17 +74,24 @@ def test_each_plant_gets_a_plan_within_unequal_limits(plant, speed_limits):
         assert np.all(np.abs(omega) <= np.abs(v) / 0.6 + 1e-12)
 
 
-def test_a_robot_with_lags_is_planned_for_on_its_way():
+def test_a_robot_with_lags_is_planned_for_on_its_way_with_the_speeds_it_has():
     scenario = scene(model="dynamic_unicycle")
     report = plan_scenario(scenario, [default_law()], seed=0, effort=QUICK)
-    here = replace(scenario, start=report.plan.trajectory.x[20, :3])
+    state = report.plan.trajectory.x[20]
+    here = replace(scenario, start=state[:3], speeds=tuple(state[3:]))
+    assert here.speeds[0] > 0.4
+    left = replay(here, report.controls[20:], PERIOD)
+    assert left.trajectory[-1, 1:] == pytest.approx(report.replay.trajectory[-1, 1:], abs=1e-4)
     later = plan_scenario(here, [default_law()], effort=QUICK, previous=report, elapsed=20 * PERIOD)
     assert later.status == "planned"
-    assert later.replay.arrival_time < report.replay.arrival_time
+    assert later.replay.arrival_time < report.replay.arrival_time - 20 * PERIOD + 1e-3
+    assert later.certificate.clearance <= later.replay.clearance
 
 
-def test_the_replay_of_lags_is_what_an_adaptive_integrator_finds():
-    scenario, rng = scene(model="dynamic_unicycle", goal=[50.0, 0.0, 0.0]), np.random.default_rng(3)
+@pytest.mark.parametrize("speeds", [(0.0, 0.0), (0.45, -0.5)])
+def test_the_replay_of_lags_is_what_an_adaptive_integrator_finds(speeds):
+    scenario = scene(model="dynamic_unicycle", goal=[50.0, 0.0, 0.0], speeds=speeds)
+    rng = np.random.default_rng(3)
     controls = np.repeat(rng.uniform(-0.5, 0.5, (12, 2)), rng.integers(1, 9, 12), axis=0)
     found = replay(scenario, controls, PERIOD).trajectory
     assert found[-1, 1:] == pytest.approx(integrated(scenario, controls)[-1], abs=2e-6)

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from applications.rosbot.planner import PERIOD, PlanReport, plan_scenario
+from applications.rosbot.planner import PlanReport, plan_scenario
+from applications.rosbot.problems import PERIOD
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.stabilizer import default_law
 from tests.bench.planners.attempt import Answer, Watch

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from applications.rosbot.planner import PERIOD, problem_of
+from applications.rosbot.problems import PERIOD, problem_of
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.stabilizer import default_law
 from gpsynth.arrays import Floats
