@@ -8,19 +8,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from applications.rosbot.curves import Curves, Samples
+from applications.rosbot.curves import Curves
+from applications.rosbot.escapes import Escape, escapes, turning_time
+from applications.rosbot.links import BLOCKED, SENSES, SPACING, Links, Piece, blockages, durations, pace
 from applications.rosbot.reeds_shepp import paths
 from applications.rosbot.routes import Route
 from applications.rosbot.scenario import Scenario
 from gpsynth.arrays import Floats
 
-_Piece = tuple[Floats, Floats]  # poses (N, 3) and the sense of travel up to each, (N,)
-
-SENSES = (1.0, -1.0)  # forwards, backwards
-SPACING = 0.05  # m, between the poses of a guide
 JOINS = (0.3, 0.6, 1.0, 1.5)  # m along the route where the curves from the start and to the goal may join it
-BLOCKED = 40.0  # s of detour that a meter in collision counts for, times its depth and 0.1 m in m
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +27,9 @@ class Guide:
 
     poses: Floats  # (N, 3) m, m, rad: the robot's heading, also where it drives backwards
     times: Floats  # (N,) s, at top speed
-    senses: Floats  # (N,) +1 driven forwards, -1 backwards, up to here
+    senses: Floats  # (N,) +1 driven forwards, -1 backwards, 0 turned in place, up to here
     score: float  # s, the duration and what the way through obstacles counts for
+    arrival: float  # s, when it comes into the goal's tolerance
 
     @property
     def duration(self) -> float:
@@ -54,13 +53,16 @@ def direct_guides(scenario: Scenario, count: int = 16) -> list[Guide]:
     """Reeds-Shepp curves from start to goal, the best first."""
     curves = Curves.of(paths(scenario.start, scenario.goal, _radius(scenario))[:16])
     samples = curves.sampled(SPACING)
-    scores = _durations(scenario, curves) + BLOCKED * _blockages(scenario, samples)
+    scores = durations(scenario, curves) + BLOCKED * blockages(scenario, samples)
     best = [int(row) for row in np.argsort(scores, kind="stable") if np.isfinite(scores[row])]
     return [_guide(scenario, [samples.piece(row)], float(scores[row])) for row in best[:count]]
 
 
 def guides_along(scenario: Scenario, routes: Sequence[Route], count: int = 32) -> list[list[Guide]]:
-    """For each route guides that follow it forwards or backwards, the best first."""
+    """For each route guides that follow it forwards or backwards, the best first.
+
+    Where no curve leaves the start freely, or enters the goal, escapes (`escapes.py`) come before the curves, or after.
+    """
     joins = [np.array([join for join in JOINS if join < 0.6 * route.length]) for route in routes]
     entries, exits = (
         [],
@@ -73,25 +75,20 @@ def guides_along(scenario: Scenario, routes: Sequence[Route], count: int = 32) -
     firsts, lasts = np.concatenate([np.empty((0, 3)), *entries]), np.concatenate([np.empty((0, 3)), *exits])
     if not len(firsts):
         return [[] for _ in routes]
-    begins, ends = (np.broadcast_to(pose, firsts.shape) for pose in (scenario.start, scenario.goal))
-    curves = Curves.shortest(
-        np.concatenate([begins, lasts]), np.concatenate([firsts, ends]), _radius(scenario)
-    )
-    samples = curves.sampled(SPACING)
-    scores = _durations(scenario, curves) + BLOCKED * _blockages(scenario, samples)
+    links = _links(scenario, firsts, lasts)
     places = np.cumsum([0, *(len(each) for each in entries)])
     found = []
     for number, (route, ways) in enumerate(zip(routes, joins, strict=True)):
         combined = []
         for index, sense in enumerate(SENSES):
             first = int(places[2 * number + index])
-            combined += _combined(scenario, route, ways, sense, scores, (first, first + len(firsts)))
+            combined += _combined(scenario, route, ways, sense, links, first)
         best = sorted(combined, key=lambda each: each[0])[:count]
         found.append(
             [
                 _guide(
                     scenario,
-                    [samples.piece(head), _followed(route, begin, end, sense), samples.piece(tail)],
+                    [*links.head(head), _followed(route, begin, end, sense), *links.tail(tail)],
                     score,
                 )
                 for score, head, tail, begin, end, sense in best
@@ -100,24 +97,35 @@ def guides_along(scenario: Scenario, routes: Sequence[Route], count: int = 32) -
     return found
 
 
+def _links(scenario: Scenario, firsts: Floats, lasts: Floats) -> Links:
+    """What joins the start to poses (N, 3), and others to the goal."""
+    leaves, arrives = [Escape.nowhere(scenario.start)], [Escape.nowhere(scenario.goal)]
+    links = Links.of(scenario, firsts, lasts, _radius(scenario), leaves, arrives)
+    if any(links.blocked):
+        leaves += escapes(scenario, scenario.start) if links.blocked[0] else []
+        arrives += escapes(scenario, scenario.goal, arrives=True) if links.blocked[1] else []
+        links = Links.of(scenario, firsts, lasts, _radius(scenario), leaves, arrives)
+    return links
+
+
 def _combined(
     scenario: Scenario,
     route: Route,
     ways: Floats,
     sense: float,
-    scores: Floats,
-    places: tuple[int, int],
+    links: Links,
+    place: int,
 ) -> list[tuple[float, int, int, float, float, float]]:
-    """Score, curves and joints of every way along a route; the route itself is free, so only the curves are tested.
+    """Score, links and joints of every way along a route; the route itself is free, so only the links are tested.
 
-    The curves to and from the route stand from the `places` on.
+    The links to and from the route stand from `place` on.
     """
-    pace, (heads, tails), found = _pace(scenario, sense), places, []
+    seconds, (heads, tails), found = pace(scenario, sense), [each.min(axis=0) for each in links.scores], []
     for i, begin in enumerate(ways):
         for j, end in enumerate(route.length - ways):
-            score = float(scores[heads + i] + scores[tails + j] + pace * (end - begin))
+            score = float(heads[place + i] + tails[place + j] + seconds * (end - begin))
             if begin < end and np.isfinite(score):
-                found.append((score, heads + i, tails + j, float(begin), float(end), sense))
+                found.append((score, place + i, place + j, float(begin), float(end), sense))
     return found
 
 
@@ -127,44 +135,26 @@ def _radius(scenario: Scenario) -> float:
     return max(top_speed(scenario) / (min(right, left) or max(right, left)), scenario.turning_radius)
 
 
-def _pace(scenario: Scenario, sense: float) -> float:
-    """Seconds a meter takes at top speed, forwards or backwards; infinity where the limits forbid it."""
-    limit = scenario.speed_limits[1] if sense > 0.0 else -scenario.speed_limits[0]
-    return 1.0 / limit if limit > 0.0 else np.inf
-
-
-def _durations(scenario: Scenario, curves: Curves) -> Floats:
-    """How long driving along takes at top speed (N,), in s."""
-    seconds = np.zeros(len(curves.lengths))
-    for sense in SENSES:
-        driven = np.sum(np.maximum(sense * curves.lengths, 0.0), axis=1)
-        seconds[driven > 0.0] += _pace(scenario, sense) * driven[driven > 0.0]
-    return seconds
-
-
-def _blockages(scenario: Scenario, samples: Samples) -> Floats:
-    """Integral (N,) along curves of the depth in obstacles or out of bounds and 0.1 m, where there is any (m^2)."""
-    places = samples.poses[:, :2]
-    low, high = scenario.bounds.reshape(2, 2).T
-    room = np.minimum(places - low, high - places).min(axis=1)
-    discs = scenario.discs
-    gaps = np.hypot(*(places[:, None] - discs[:, :2]).transpose(2, 0, 1)) - discs[:, 2]
-    room = np.minimum(room, gaps.min(axis=1, initial=np.inf))
-    if scenario.field is not None:
-        room = np.minimum(room, scenario.field.at(places) - scenario.radius)
-    depth = -room
-    counted = np.concatenate([[0.0], np.cumsum(np.where(depth > 0.0, 0.1 + depth, 0.0))])
-    blocked: Floats = SPACING * np.diff(counted[samples.bounds])
-    return blocked
-
-
-def _guide(scenario: Scenario, line: Sequence[_Piece], score: float) -> Guide:
+def _guide(scenario: Scenario, line: Sequence[Piece], score: float) -> Guide:
     """The pieces of a line, one after the other."""
     poses, senses = (np.concatenate(parts) for parts in zip(*line, strict=True))
-    pace = np.where(senses > 0.0, _pace(scenario, 1.0), _pace(scenario, -1.0))
+    paces = np.where(senses > 0.0, pace(scenario, 1.0), pace(scenario, -1.0))
     steps = np.hypot(*np.diff(poses[:, :2], axis=0).T)
-    times = np.cumsum(steps * np.where(steps > 0.0, pace[1:], 0.0))
-    return Guide(poses, np.concatenate([[0.0], times]), senses, score)
+    times = steps * np.where(steps > 0.0, paces[1:], 0.0)
+    for turn in 1 + np.flatnonzero(senses[1:] == 0.0):
+        times[turn - 1] = turning_time(scenario, float(poses[turn, 2] - poses[turn - 1, 2]))
+    times = np.cumsum(times)
+    times = np.concatenate([[0.0], times])
+    return Guide(poses, times, senses, score, float(times[np.argmax(_within(scenario, poses))]))
+
+
+def _within(scenario: Scenario, poses: Floats) -> npt.NDArray[np.bool_]:
+    """Which poses (N, 3) are within the goal's tolerance, for certain the last one."""
+    error = poses - scenario.goal
+    near = np.hypot(error[:, 0], error[:, 1]) <= scenario.position_tolerance
+    near &= np.abs(np.remainder(error[:, 2] + np.pi, 2.0 * np.pi) - np.pi) <= scenario.heading_tolerance
+    near[-1] = True
+    return near
 
 
 def _turned(poses: Floats, sense: float) -> Floats:
@@ -173,6 +163,6 @@ def _turned(poses: Floats, sense: float) -> Floats:
     return turned
 
 
-def _followed(route: Route, begin: float, end: float, sense: float) -> _Piece:
+def _followed(route: Route, begin: float, end: float, sense: float) -> Piece:
     ways = np.append(np.arange(begin, end, SPACING), end)
     return _turned(route.poses(ways), sense), np.full(len(ways), sense)

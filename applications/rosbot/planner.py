@@ -14,10 +14,10 @@ from applications.rosbot.bounds import lower_bound
 from applications.rosbot.certificate import Certificate, certify
 from applications.rosbot.following import follow
 from applications.rosbot.guides import top_speed
+from applications.rosbot.margins import FINER, start_gap, ways_within
 from applications.rosbot.problems import PERIOD, problems_of
 from applications.rosbot.reachability import Reachability, reachability
 from applications.rosbot.replay import Replay, replay
-from applications.rosbot.routes import routes
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.swarms import Effort, Found, Search
 from applications.rosbot.vehicles import first_state, plant_of, steered, widened
@@ -128,11 +128,11 @@ def plan_scenario(
     verdict = _verdict(scenario)
     if verdict.status == "unreachable":
         return watch.stamped(replace(report, status="unreachable", reason=verdict.reason))
-    if watch.is_over():
-        return watch.stamped(replace(report, ended="deadline"))
-    ways = routes(scenario, margin=effort.scouts.margin)
     for attempt in range(effort.attempts):
-        search = Search(scenario, ways, problems, effort, seed, attempt, threads, watch.stop)
+        if watch.is_over():
+            return watch.stamped(replace(report, ended="deadline"))
+        margin, ways = ways_within(scenario, effort.scouts.margin / FINER**attempt)
+        search = Search(scenario, ways, problems, effort, margin, seed, attempt, threads, watch.stop)
         report = watch.improved(report, search.run())
         if report.status == "planned" or report.ended != "complete":
             break
@@ -245,7 +245,9 @@ def _followed(
     if not len(previous.schedule.dwell) or law.plant.state_names != plant.state_names:
         return iter(())
     [(problem, law)] = problems_of(report.scenario, [law])
-    return follow(problem, law, previous, elapsed, effort.followers, report.seed, stop=stop)
+    margin = min(effort.followers.margin, 0.5 * start_gap(report.scenario), max(previous.clearance, 0.0))
+    settings = replace(effort.followers, margin=margin)
+    return follow(problem, law, previous, elapsed, settings, report.seed, stop=stop)
 
 
 def _confirmed(report: PlanReport, found: Found) -> PlanReport:

@@ -43,7 +43,9 @@ class Effort:
     added: int = 2  # points that refinement adds
     nearness: float = 0.3  # noise of refinement's first schedules, as a share of the scouts'
     weights: Weights = Weights()  # of what counts beside time
-    attempts: int = 3  # with other random numbers and twice the time budget, while nothing is found
+    attempts: int = (
+        3  # while nothing is found, each with other random numbers, twice the time and less margin
+    )
     rollouts: float = inf  # after which the best plan so far is given
     deadline: float = inf  # s of wall clock, likewise; what comes of it is not the same every time
 
@@ -118,6 +120,7 @@ class Search:
     routes: Sequence[Route]
     problems: Sequence[tuple[Problem, Law]]
     effort: Effort
+    margin: float  # m, of clearance that is asked for at most
     seed: int
     attempt: int = 0
     threads: int = 1
@@ -165,7 +168,12 @@ class Search:
         swarms: list[Swarm] = []
         for task in tasks:
             problem, law = self.problems[task.team]
-            settings = replace(task.settings, top_speed=top_speed(self.scenario), weights=self.effort.weights)
+            settings = replace(
+                task.settings,
+                margin=min(task.settings.margin, self.margin),
+                top_speed=top_speed(self.scenario),
+                weights=self.effort.weights,
+            )
             for plan in pose_plans(
                 problem,
                 law,
@@ -185,16 +193,18 @@ class Search:
         return swarms, budget, spent
 
     def _scouts(self) -> Iterator[Task]:
-        """For each law swarms along the guides of every way, every fourth particle anywhere."""
+        """For each law swarms along the guides of every way, every fourth particle anywhere.
+
+        Two of three swarms begin with schedules that lead through the goal: who aims at it arrives slowly.
+        """
         effort, teams = self.effort, len(self.problems)
-        exact = [schedules_along(way, self.points) if way else None for way in self.ways]
-        ways = [
-            (way, each)
-            for way, each in zip(self.ways, exact, strict=True)
-            for _ in range(-(-effort.swarms // teams))
-        ]
-        settings = replace(effort.scouts, points=self.points, swarms=len(ways))
         for team in range(teams):
+            ways = [
+                (way, schedules_along(way, self.points, through=number % 3 > 0) if way else None)
+                for way in self.ways
+                for number in range(team, team + -(-effort.swarms // teams))
+            ]
+            settings = replace(effort.scouts, points=self.points, swarms=len(ways))
             rng = stream(self.seed, SCOUT, self.attempt, team, 0)
             initial = []
             for _, known in ways:

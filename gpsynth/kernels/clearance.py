@@ -2,8 +2,10 @@
 
 The robot is one or several circles. Within one integration step each of them, and every moving obstacle, goes along a
 nearly straight line, so the distance is smallest at a closed-form point of the chord. The path bends away from its
-chord by at most h / 8 |v1 - v0| to first order (the sagitta of an arc), which is deducted, so that a step is judged by
-all of its path and not by its ends.
+chord by at most b = h / 8 |v1 - v0| to first order (the sagitta of an arc), which is deducted, so that a step is judged
+by all of its path and not by its ends. At the share s of the chord it is 4 s (1 - s) b away: where an end is nearest
+and the distance grows from there by 4 b a chord or more, the end is nearest on the path too, and nothing is deducted.
+So a robot that touches an obstacle can leave it.
 
 All obstacles of other shapes are one distance field (`field.py`).
 """
@@ -41,12 +43,13 @@ def rooms(
     x_low, x_high, y_low, y_high = area[0], area[1], area[2], area[3]
     for lane in range(lanes):
         x0, x1, y0, y1 = w[before + i, lane], w[after + i, lane], w[before + j, lane], w[after + j, lane]
+        bend_x = 0.125 * step * abs(w[slope1 + i, lane] - w[slope0 + i, lane])
+        bend_y = 0.125 * step * abs(w[slope1 + j, lane] - w[slope0 + j, lane])
         x_room = min(min(x0, x1) - x_low, x_high - max(x0, x1))
         y_room = min(min(y0, y1) - y_low, y_high - max(y0, y1))
-        bend_x = w[slope1 + i, lane] - w[slope0 + i, lane]
-        bend_y = w[slope1 + j, lane] - w[slope0 + j, lane]
-        bend = 0.125 * step * math.sqrt(bend_x * bend_x + bend_y * bend_y)
-        w[out + GAP, lane] = min(x_room, y_room) - bend
+        x_room -= 0.0 if abs(x1 - x0) >= 4.0 * bend_x else bend_x
+        y_room -= 0.0 if abs(y1 - y0) >= 4.0 * bend_y else bend_y
+        w[out + GAP, lane] = min(x_room, y_room)
 
 
 @part
@@ -127,11 +130,13 @@ def pass_disc(
         px, py = w[out + X, lane] - x, w[out + Y, lane] - y
         qx, qy = w[out + DX, lane] - dx, w[out + DY, lane] - dy
         square = qx * qx + qy * qy
-        s = -(px * qx + py * qy) / (square if square > 0.0 else 1.0)
-        s = 0.0 if s < 0.0 else (1.0 if s > 1.0 else s)
+        bend = w[out + BEND, lane]
+        nearest = -(px * qx + py * qy) / (square if square > 0.0 else 1.0)
+        s = 0.0 if nearest < 0.0 else (1.0 if nearest > 1.0 else nearest)
         px += s * qx
         py += s * qy
-        gap = math.sqrt(px * px + py * py) - radius
+        apart = math.sqrt(px * px + py * py)
+        gap = apart - radius + (bend if abs(nearest - s) * square >= 4.0 * bend * apart else 0.0)
         w[out + NEAR, lane] = gap if gap < w[out + NEAR, lane] else w[out + NEAR, lane]
 
 
@@ -149,15 +154,17 @@ def pass_near_circles(w: Floats, lanes: int, out: int, world: World, body: float
         if holds:
             cell = int(v) * int(columns) + int(u)
             first, last = cells.firsts[cell], cells.firsts[cell + 1]
-        near = w[out + NEAR, lane]
+        near, bend = w[out + NEAR, lane], w[out + BEND, lane]
         for number in range(first, last):
             k = world.movers + (cells.members[number] if holds else number)
             px, py = x - circles[k, 0], y - circles[k, 1]
-            s = -(px * qx + py * qy) / (square if square > 0.0 else 1.0)
-            s = 0.0 if s < 0.0 else (1.0 if s > 1.0 else s)
+            nearest = -(px * qx + py * qy) / (square if square > 0.0 else 1.0)
+            s = 0.0 if nearest < 0.0 else (1.0 if nearest > 1.0 else nearest)
             px += s * qx
             py += s * qy
-            gap = math.sqrt(px * px + py * py) - (circles[k, 4] + body)
+            apart = math.sqrt(px * px + py * py)
+            gap = apart - (circles[k, 4] + body)
+            gap += bend if abs(nearest - s) * square >= 4.0 * bend * apart else 0.0
             near = gap if gap < near else near
         w[out + NEAR, lane] = near
 

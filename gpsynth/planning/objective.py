@@ -17,6 +17,7 @@ Flags = npt.NDArray[np.bool_]
 
 NARROW = 0.2  # m; being in collision for a second weighs as much as this depth
 STEEPNESS = 8.0  # 1/(m s) of the obstacle term
+TOUCHING = 1e-10  # m; a path that touches an obstacle is clear, and rounding may show an overlap of less
 ROUNDING = 1e-9  # of a limit: what is above it by no more is not above it
 
 
@@ -105,7 +106,7 @@ class Objective:
         free = (
             self.covered(points) == 0.0
             if self.settings.obstacles == "points"
-            else rollouts.clearance[:, 0] >= 0.0
+            else rollouts.clearance[:, 0] >= -TOUCHING
         )
         return np.isfinite(rollouts.arrival[:, 0]) & free
 

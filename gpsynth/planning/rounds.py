@@ -29,7 +29,7 @@ from gpsynth.optimizers import (
     minimize,
     rescore,
 )
-from gpsynth.planning.objective import Objective
+from gpsynth.planning.objective import TOUCHING, Objective
 from gpsynth.planning.settings import PlanSettings
 from gpsynth.planning.slices import Slices, Stop
 from gpsynth.planning.weights import weighted
@@ -66,7 +66,7 @@ class Plan:
     @property
     def is_free(self) -> bool:
         """Whether the goal is reached without a collision anywhere on the path."""
-        return bool(np.isfinite(self.arrival_time)) and self.clearance >= 0.0
+        return bool(np.isfinite(self.arrival_time)) and self.clearance >= -TOUCHING
 
     @property
     def rank(self) -> tuple[bool, float]:

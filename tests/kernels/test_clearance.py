@@ -110,6 +110,32 @@ def test_bounds_are_obstacles_too() -> None:
     assert exact - PERIOD**2 / 4 <= circle <= exact + ABOVE
 
 
+@pytest.mark.parametrize("moving", [0.0, 0.3], ids=["fixed", "moving"])
+@pytest.mark.parametrize("count", [1, 60], ids=["one", "many"])  # many are looked at by the cells of a grid
+def test_what_is_touched_can_be_left(count: int, moving: float) -> None:
+    """Where the distance grows from an end of the chord on, nothing is deducted for a bend; if not, all of it."""
+    gap = 1e-9
+    for angle in np.linspace(-np.pi, np.pi, 9):
+        along = np.array([np.cos(angle), np.sin(angle)])
+        circle = np.array([*((-0.4 - gap) * along), *(-moving * along), 0.3])
+        far = np.array([[20.0 + k, 9.0, 0.0, 0.0, 0.1] for k in range(count - 1)]).reshape(-1, 5)
+        circles = np.vstack([circle, far])
+        exact = np.min(_gaps(_path(0.5, 0.5, np.zeros(3)), circles)) - 0.1
+        found = _drive(0.5, 0.5, np.zeros(3), Obstacles(circles, radius=0.1)).clearance[0, 0]
+        assert found <= exact + ABOVE
+        if np.cos(angle) > 0.1:
+            assert abs(found - gap) < 1e-12
+
+
+def test_a_bound_that_is_touched_can_be_left() -> None:
+    obstacles = Obstacles(bounds=np.array([0.0, 5.0, -9.0, 9.0]))
+    assert _drive(0.5, 0.5, np.array([0.0, 0.0, 0.5]), obstacles).clearance[0, 0] == 0.0
+    beside = Obstacles(bounds=np.array([-9.0, 9.0, 0.0, 9.0]))
+    assert abs(_drive(0.5, 0.5, np.zeros(3), beside).clearance[0, 0]) < 1e-12
+    toward = _drive(0.5, 0.2, np.array([0.0, 0.0, -0.01]), beside).clearance[0, 0]
+    assert toward <= np.min(_path(0.5, 0.2, np.array([0.0, 0.0, -0.01]))[1]) + ABOVE < 0.0
+
+
 def test_no_obstacles_leave_infinite_clearance_and_no_exposure() -> None:
     rolled = _drive(1.0, 1.0, np.zeros(3), Obstacles())
     assert rolled.clearance[0, 0] == np.inf

@@ -340,6 +340,42 @@ def test_a_schedule_along_a_guide_takes_its_time_and_points_at_its_cusps():
     assert 0.6 * guide.duration < schedule.dwell.sum() < guide.duration
 
 
+def test_a_schedule_through_the_goal_ends_beyond_where_its_guide_arrives():
+    guide = direct_guides(scene(circles=np.zeros((0, 5))))[0]
+    to, through = along(guide, 5), along(guide, 5, through=True)
+    assert guide.arrival == pytest.approx(2.95 / 0.5)
+    assert to.dwell.sum() < guide.arrival < through.dwell.sum()
+    assert to.points[-1, 0] < 3.0 < through.points[-1, 0]
+
+
+def test_cusps_that_are_near_each_other_have_a_point_each():
+    short = scene(goal=[0.0, 0.1, 0.0], circles=np.zeros((0, 5)))
+    guide = next(each for each in direct_guides(short) if len(each.cusps) > 1)
+    assert set(np.round(guide.cusps, 9)) <= set(np.round(np.cumsum(along(guide, 3).dwell), 9))
+
+
+TOUCHED = [-0.4, -0.1, 0.0, 0.0, np.hypot(0.4, 0.1) - 0.15]  # leaves the robot at the origin no room at all
+WEDGING = [[-0.02, 0.551, 0.0, 0.0, 0.4], [0.1, -0.545, 0.0, 0.0, 0.4], [0.7, 0.0, 0.0, 0.0, 0.2]]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"circles": [TOUCHED, [1.5, 0.05, 0.0, 0.0, 0.3]]},
+        {"bounds": [0.0, 4.0, -2.0, 2.0]},
+        {"start": [0.0, 0.0, -1.2], "goal": [2.5, -0.8, 2.8], "circles": WEDGING},
+    ],
+    ids=["circle", "bound", "wedged"],
+)
+def test_a_robot_with_hardly_any_room_finds_its_way(changes):
+    """Touched from behind, at the edge, between circles on three sides."""
+    cramped = scene(**changes)
+    report = plan_scenario(cramped, [law()], seed=1, effort=QUICK)
+    assert report.status == "planned"
+    assert replay(cramped, report.controls, PERIOD).solves
+    assert report.replay.arrival_time < 25.0
+
+
 def test_schedules_repeat_the_guides_with_noise():
     guides = direct_guides(scene())[:2]
     schedules = repeated(schedules_along(guides, 4), 5, stream(1))
