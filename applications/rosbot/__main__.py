@@ -14,7 +14,7 @@ from gpsynth.command_line import LOADING, run, seed_option, status, threads_opti
 from gpsynth.run_files import begin
 
 PATH = click.Path(path_type=Path)
-SEED = 3  # of the law that comes along
+SEED = 1  # of the law that comes along
 EXIT_CODES = MappingProxyType({"planned": 0, "unreachable": 3, "not_found": 4})
 DRIVE_EXIT_CODES = MappingProxyType({"arrived": 0, "unreachable": 3, "late": 4, "collision": 4})
 resume_option = click.option(

@@ -80,12 +80,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, nargs="*", default=list(range(1, 11)))
     parser.add_argument("--budget", type=int, default=SEARCH_BUDGET)
+    parser.add_argument("--objective", choices=["plans", "settling"], default="plans")
     arguments = parser.parse_args()
     print(HEAD)
     print(f"{'shipped':9}{_cells(default_law())}", flush=True)
     for seed in arguments.seeds:
         began = time.perf_counter()
-        result = synthesize_stabilizer(seed=seed, budget=arguments.budget)
+        result = synthesize_stabilizer(seed=seed, budget=arguments.budget, objective=arguments.objective)
         taken = time.perf_counter() - began
         print(f"{f'seed {seed}':9}{_cells(result.law)}{taken:8.1f}", flush=True)
         print("\n".join(f"    {line}" for line in result.law.formulas()), flush=True)
