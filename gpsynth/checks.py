@@ -11,8 +11,8 @@ from gpsynth.errors import GpsynthError, ProblemError
 def check_kind(
     name: str, value: Any, *kinds: type[Any], error: type[GpsynthError] = ProblemError, optional: bool = False
 ) -> None:
-    """Raises the error unless the value is of one of the kinds, or None where it is `optional`."""
-    if isinstance(value, kinds) or (optional and value is None):
+    """Raises the error unless the value is of one of the kinds, or None where it is `optional`; a class is of none."""
+    if (isinstance(value, kinds) and not isinstance(value, type)) or (optional and value is None):
         return
     wanted = " or ".join([_one(kind) for kind in kinds] + ["None"] * optional)
     plain = value is None or isinstance(value, str | bool | int | float | type)

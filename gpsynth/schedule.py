@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from gpsynth.arrays import Floats, frozen
+from gpsynth.checks import check_kind, check_number, check_whole
 from gpsynth.errors import ProblemError
 
 
@@ -40,6 +41,7 @@ class Schedule:
 
     def after(self, elapsed: float) -> "Schedule":
         """What is left of it after so many seconds: points that are over drop out, the last one stays for no time."""
+        check_number("the time elapsed of a schedule", elapsed)
         left = np.diff(np.maximum(self.ends - elapsed, 0.0), prepend=0.0)
         kept = left > 0.0
         kept[-1:] |= not np.any(kept)
@@ -47,6 +49,9 @@ class Schedule:
 
     def split(self, count: int) -> "Schedule":
         """The same motion with `count` points, more than it has: the longest dwell times are cut in two."""
+        check_whole("the count of points of a schedule", count, 0)
+        if not len(self.dwell) and count:
+            raise ProblemError("a schedule without points has none that could be split")
         points, dwell = self.points, self.dwell
         while len(dwell) < count:
             longest = int(np.argmax(dwell))
@@ -58,18 +63,30 @@ class Schedule:
 
 @dataclass(frozen=True, eq=False)
 class Schedules:
-    """N schedules of as many points each, as arrays."""
+    """N schedules of as many points each, as arrays; raises ProblemError if their shapes do not agree."""
 
     points: Floats  # (N, k, n)
     dwell: Floats  # (N, k) s
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "points", frozen(self.points))
-        object.__setattr__(self, "dwell", frozen(self.dwell))
+        object.__setattr__(self, "points", _numbers("points", self.points))
+        object.__setattr__(self, "dwell", _numbers("dwell times", self.dwell))
+        if self.points.ndim != 3 or self.dwell.shape != self.points.shape[:2]:
+            raise ProblemError(
+                f"points and dwell of schedules have shapes {self.points.shape} and {self.dwell.shape}; "
+                "expected (N, k, n) and (N, k)"
+            )
 
     @classmethod
     def of(cls, schedules: Sequence[Schedule]) -> "Schedules":
-        """These schedules, at least one."""
+        """These schedules, at least one; raises ProblemError if they are none, or of several shapes."""
+        for each in schedules:
+            check_kind("a schedule", each, Schedule)
+        shapes = sorted({each.points.shape for each in schedules})
+        if len(shapes) != 1:
+            raise ProblemError(
+                f"schedules that are tried together need points of one shape; these have {_joined(shapes)}"
+            )
         return cls(
             np.stack([each.points for each in schedules]), np.stack([each.dwell for each in schedules])
         )
@@ -90,6 +107,10 @@ class Schedules:
     def take(self, numbers: npt.NDArray[np.intp]) -> "Schedules":
         """Some of them, by their numbers."""
         return Schedules(self.points[numbers], self.dwell[numbers])
+
+
+def _joined(shapes: Sequence[tuple[int, ...]]) -> str:
+    return " and ".join(map(str, shapes)) or "none"
 
 
 def _numbers(what: str, values: npt.ArrayLike) -> Floats:

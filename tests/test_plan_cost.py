@@ -12,7 +12,8 @@ from gpsynth.law import Law
 from gpsynth.obstacles import Obstacles
 from gpsynth.planning import PlanCost, Task
 from gpsynth.planning.objective import NARROW, STEEPNESS
-from gpsynth.schedule import Schedule
+from gpsynth.plant import Plant
+from gpsynth.schedule import Schedule, Schedules
 from gpsynth.simulation import simulate
 from tests.test_worth import LEAST, law_of, problem
 
@@ -20,6 +21,13 @@ AT_ONCE = Schedule(np.empty((0, 2)), np.empty(0))
 AWAY = Schedule([[-1.0, 0.0]], [2.0])  # a meter back first, and there until two seconds are over
 THERE = Schedule([[9.0, 0.0]], [3.0])
 COLUMN = Obstacles(circles=[[2.0, 0.0, 0.0, 0.0, 0.4]], radius=0.1)  # 1 m of the way is covered
+
+FLEEING = Plant(
+    lambda x, u: (u.v - np.exp(100.0 * (-3.0 - x.x)), 0.0 * u.v),  # behind -3 m it is carried away
+    problem().plant.states,
+    problem().plant.controls,
+    name="cart",
+)
 
 
 def task(*schedules: Schedule, **changes) -> Task:
@@ -80,6 +88,21 @@ def test_every_vector_stands_in_its_row() -> None:
         assert row.tolist() == both(program, vector[np.newaxis])[0].tolist()
 
 
+def test_one_vector_is_a_row() -> None:
+    program, cost = law_of(1.0).program, PlanCost((task(AWAY, THERE), task(THERE, goal=2.0)))
+    assert cost(program, np.array([0.5, 1.0])).tolist() == cost(program, np.array([[0.5, 1.0]])).tolist()
+
+
+def test_a_plan_that_diverges_costs_infinity_and_the_best_of_the_others_counts() -> None:
+    fleeing = replace(problem(obstacles=COLUMN), plant=FLEEING)
+    law = replace(law_of(1e3), plant=FLEEING)
+    still, lost = AWAY, Schedule([[-9.0, 0.0]], [20.0])
+    assert np.isinf(costs(law, Task(fleeing, LEAST, [lost], budget=20.0)))
+    assert costs(law, Task(fleeing, LEAST, [lost, still], budget=20.0)) == costs(
+        law, Task(fleeing, LEAST, [still], budget=20.0)
+    )
+
+
 def test_what_is_above_the_limit_ends_early_and_nothing_else_does() -> None:
     program, vectors = law_of(1.0).program, np.array([[2.0, 1.0], [2.0, 0.5]])
     three = PlanCost(3 * (task(THERE),))
@@ -117,10 +140,25 @@ def test_limits_are_those_of_the_task() -> None:
         (lambda: PlanCost(()), "at least one task"),
         (lambda: PlanCost((task(),)), "no initial schedules"),
         (lambda: PlanCost((problem(),)), "a task must be a Task, got a Problem"),
+        (lambda: PlanCost(task(AWAY)), "tasks of the cost of plans must be a list or a tuple, got a Task"),
+        (lambda: PlanCost(3), "tasks of the cost of plans must be a list or a tuple, got 3"),
         (lambda: PlanCost((task(AWAY),), weight=0.0), "weight of plans must be finite and greater than 0"),
         (lambda: PlanCost((task(AWAY),), gamma=np.inf), "gamma of plans must be finite and greater than 0"),
         (lambda: PlanCost((task(AWAY),), margin=-1.0), "margin must be finite and at least 0"),
         (lambda: Task(problem(), LEAST, budget=0.0), "budget of a task must be finite and greater than 0"),
+        (lambda: Task(problem(), LEAST, budget=0.02), "0.02 s, is shorter than the period, 0.05 s"),
+        (lambda: Task(problem(), LEAST, budget=1e9), "at most 10000000 periods"),
+        (lambda: Task(problem(), None), "least time of a task must be a number, got None"),
+        (lambda: Task(problem(goal=0.04), LEAST), "begins at its goal already"),
+        (lambda: Task(replace(problem(), starts=np.zeros((2, 2))), LEAST), "at one start; its problem has 2"),
+        (lambda: Task(problem(), LEAST, AWAY), "must be a list or a tuple or a Schedules, got a Schedule"),
+        (lambda: task(3), "a schedule must be a Schedule, got 3"),
+        (lambda: task(AWAY, AT_ONCE), r"points of one shape; these have \(0, 2\) and \(1, 2\)"),
+        (lambda: task(Schedule([[1.0]], [1.0])), r"points of shape \(1, 1\); expected \(k, 2\)"),
+        (lambda: Task(problem(), LEAST, Schedules([[[np.nan, 0.0]]], [[1.0]])), "hold NaN or infinity"),
+        (lambda: Task(problem(), LEAST, Schedules([[[1.0, 0.0]]], [[-1.0]])), "at least 0 s, got"),
+        (lambda: PlanCost((task(AWAY),))(law_of(1.0).program, [[1.0, 1.0]], 3.0), r"most has shape \(\)"),
+        (lambda: PlanCost((task(AWAY),))(law_of(1.0), [[1.0, 1.0]]), "must be a Program, got a Law"),
     ],
 )
 def test_what_is_wrong_is_said(make, sentence) -> None:

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from gpsynth.arrays import Floats
-from gpsynth.checks import check_kind, check_number
+from gpsynth.arrays import Floats, numbers, shaped
+from gpsynth.checks import check_number
 from gpsynth.errors import ProblemError
 from gpsynth.evaluate import ROUNDING, Evaluator
 from gpsynth.objective import costs_of
 from gpsynth.planning.objective import obstacle_term
 from gpsynth.planning.settings import PlanSettings
-from gpsynth.planning.task import Task
+from gpsynth.planning.task import Task, tasks_of
 from gpsynth.problem import Problem
 from gpsynth.program import Program
 
@@ -41,11 +41,8 @@ class PlanCost:
     margin: float = PlanSettings.margin  # m, clearance that counts as none
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "tasks", tuple(self.tasks))
-        if not self.tasks:
-            raise ProblemError("the cost of plans needs at least one task")
+        object.__setattr__(self, "tasks", tasks_of(self.tasks, "the cost of plans"))
         for task in self.tasks:
-            check_kind("a task", task, Task)
             Evaluator(task.problem, margin=self.margin)  # says what is wrong with the margin
             if not len(task.schedules):
                 raise ProblemError(
@@ -56,6 +53,7 @@ class PlanCost:
             check_number(f"the {name} of plans", value)
             if not 0.0 < value < np.inf:
                 raise ProblemError(f"the {name} of plans must be finite and greater than 0, not {value}")
+            object.__setattr__(self, name, float(value))
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -64,10 +62,11 @@ class PlanCost:
 
     def __call__(self, program: Program, vectors: Floats, most: Floats | None = None) -> Floats:
         """Costs (N, T) of a law under N parameter vectors (N, p); a mean above `most` (N,) may be infinity."""
+        vectors = np.atleast_2d(numbers("parameters", vectors))
         costs = np.full((len(vectors), len(self.tasks)), np.inf)
         left, spent, limit = np.arange(len(vectors)), np.zeros(len(vectors)), np.full(len(vectors), np.inf)
         if most is not None and self.nonnegative:
-            limit = len(self.tasks) * most * (1.0 + ROUNDING)
+            limit = shaped("most", most, (len(vectors),), finite=False) * (len(self.tasks) * (1.0 + ROUNDING))
         for number in range(len(self.tasks)):
             costs[left, number] = self._least(number, program, vectors[left])
             spent[left] += costs[left, number]

@@ -11,12 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from gpsynth.arrays import Floats
-from gpsynth.checks import check_whole
-from gpsynth.errors import ProblemError
+from gpsynth.checks import check_kind, check_whole
 from gpsynth.law import Law
 from gpsynth.planning.rounds import plan
 from gpsynth.planning.settings import PlanSettings
-from gpsynth.planning.task import Task
+from gpsynth.planning.task import Task, tasks_of
 
 STAGE = 4  # of the random streams
 
@@ -30,10 +29,9 @@ class Worth:
     seed: int = 0
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "tasks", tasks_of(self.tasks, "the worth of a law"))
+        check_kind("settings", self.settings, PlanSettings)
         check_whole("seed", self.seed, 0)
-        object.__setattr__(self, "tasks", tuple(self.tasks))
-        if not self.tasks:
-            raise ProblemError("the worth of a law needs at least one task")
 
     def __call__(self, law: Law) -> float:
         """The worth of a law for the plant and features of the tasks; raises ProblemError if it is for others."""
@@ -41,13 +39,16 @@ class Worth:
 
     def shares(self, law: Law) -> Floats:
         """Least time / arrival time in each task (T,)."""
+        check_kind("law", law, Law)
         return np.array([self._share(law, number) for number in range(len(self.tasks))])
 
     def _share(self, law: Law, number: int) -> float:
         task = self.tasks[number]
         plant = task.problem.plant
+        if law.plant.control_names == plant.control_names:
+            law = law.with_limits(plant.lower, plant.upper)
         found = plan(
-            *(task.problem, law.with_limits(plant.lower, plant.upper), self.settings),
+            *(task.problem, law, self.settings),
             seed=self.seed,
             path=(STAGE, number),
             initial=task.initial,
