@@ -11,7 +11,7 @@ from gpsynth.checks import check_whole
 from gpsynth.errors import OptimizerError
 from gpsynth.evaluate import Evaluator, check_law
 from gpsynth.law import Law
-from gpsynth.law_cost import LawCost, PlanCases
+from gpsynth.law_cost import LawCost, PlanCases, check_plans
 from gpsynth.notation import fresh_names
 from gpsynth.objective import Function, Objective, as_objective
 from gpsynth.optimizers import CMAES, minimize
@@ -40,10 +40,11 @@ def refit(  # noqa: PLR0913 names each choice as a keyword
 
     With `constants` the numbers written into the formula are tuned too, and become parameters. The cost is the mean
     over the starts of the problem's own or of `objective`, and that of `plans` besides (`gpsynth.planning.PlanCost`).
-    Raises ProblemError if the law is not for the problem's
-    plant and features, OptimizerError for a budget below one generation.
+    Raises ProblemError if the law or the plans are not for the problem's plant and features, OptimizerError for a
+    budget below one generation.
     """
     check_law(problem, law)
+    check_plans(plans, problem)
     check_whole("seed", seed, 0, OptimizerError)
     check_whole("budget", budget, 1, OptimizerError)
     program = without_constants(law.program) if constants else law.program

@@ -19,7 +19,7 @@ from gpsynth.evaluate import Evaluator
 from gpsynth.guesses import Guess, genomes_of
 from gpsynth.islands import Islands, search_islands
 from gpsynth.law import Law
-from gpsynth.law_cost import LawCost, PlanCases
+from gpsynth.law_cost import LawCost, PlanCases, check_plans
 from gpsynth.objective import Function, Objective, as_objective
 from gpsynth.optimizers import Progress, minimize
 from gpsynth.plotting import plot_front
@@ -184,7 +184,8 @@ def synthesize(
     check_encoding(problem, encoding)
     check_search(seed, budget, threads, callback)
     check_whole("tuning", tuning, 0)
-    _check_parts(encoding, search, rough, tuned, trials, plans)
+    _check_parts(encoding, search, rough, tuned, trials)
+    check_plans(plans, problem)
     _check_islands(islands, search)
     shape = None if islands is None else (islands, budget)  # shares depend on the budget
     wanted = as_objective(objective)
@@ -253,12 +254,7 @@ def check_search(seed: int, budget: int, threads: int, callback: object) -> None
 
 
 def _check_parts(
-    encoding: Encoding[Any],
-    search: object,
-    rough: object,
-    tuned: object,
-    trials: object,
-    plans: PlanCases | None,
+    encoding: Encoding[Any], search: object, rough: object, tuned: object, trials: object
 ) -> None:
     check_kind("search", search, StructureSearch, Epochs, VariationalGA, optional=True)
     inner = search.search if isinstance(search, Epochs) else search
@@ -268,8 +264,6 @@ def _check_parts(
     check_kind("tuned", tuned, Problem, optional=True)
     check_kind("trials", trials, list, tuple)
     others = {f"problem of trial {number}": trial for number, trial in enumerate(cast(Sequence[Any], trials))}
-    if plans is not None:
-        others |= {f"problem of plan {number}": each for number, each in enumerate(plans.problems)}
     for name, other in {"rough problem": rough, "tuned problem": tuned, **others}.items():
         if other is not None or name in others:
             check_encoding(cast(Problem, other), encoding, name)

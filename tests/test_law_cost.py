@@ -1,5 +1,7 @@
 """Starts and plans in one mean."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -46,7 +48,7 @@ def test_only_what_is_above_the_bound_may_cost_infinity(share: float) -> None:
 
 def test_plans_are_not_tried_with_laws_that_lose_without_them() -> None:
     class Asked:
-        problems, weight = PLANS.problems, 1.0
+        problems, weight, nonnegative = PLANS.problems, 1.0, True
 
         def __call__(self, program, vectors, most):
             raise AssertionError("nothing is to be tried")
@@ -54,3 +56,24 @@ def test_plans_are_not_tried_with_laws_that_lose_without_them() -> None:
     found = LawCost(Evaluator(SETTLING), plans=Asked()).cases(PROGRAM, VECTORS[:1], bound=1e-3)
     assert np.isinf(found.mean())
     assert found.shape == (1, 7)
+
+
+def test_plans_that_may_earn_something_are_tried_with_every_law() -> None:
+    """What a law loses from its starts it may get back."""
+    running = problem(running=lambda x, u, goal: x.x - 10.0).running
+    task = PLANS.tasks[0]
+    earned = LawCost(
+        Evaluator(SETTLING), plans=PlanCost([replace(task, problem=problem(running=running))], weight=9.0)
+    )
+    mean = earned.means(PROGRAM, VECTORS[:1])[0]
+    assert mean < 0.0 < score(Evaluator(SETTLING), PROGRAM, VECTORS[:1]).mean()
+    assert earned.cases(PROGRAM, VECTORS[:1], bound=mean).mean() == mean
+
+
+@pytest.mark.parametrize("weight", [1e-16, 1e-9])
+def test_the_bound_itself_is_not_above_it_however_little_plans_weigh(weight: float) -> None:
+    """The sum is rounded; what of it is left for plans then has hardly a digit right."""
+    both = LawCost(Evaluator(SETTLING), plans=PlanCost(PLANS.tasks, weight=weight))
+    for vector in np.random.default_rng(1).uniform(0.3, 3.0, (20, 2)):
+        mean = both.means(PROGRAM, vector[np.newaxis])[0]
+        assert both.cases(PROGRAM, vector[np.newaxis], bound=mean).mean() == mean

@@ -6,7 +6,8 @@ import pytest
 import gpsynth as gs
 from gpsynth import export
 from gpsynth.pareto_search import ParetoSearch
-from gpsynth.planning import certified_clearance
+from gpsynth.planning import PlanCost, Task, Worth, certified_clearance
+from gpsynth.schedule import Schedules
 
 PLANT = gs.Plant(
     lambda x, u, p: (x.v, u.u / p.mass),
@@ -19,6 +20,15 @@ ENCODING = gs.TreeEncoding(PROBLEM.features.names, ("u",), ("add", "mul"), gs.Pa
 PROGRAM = gs.trace(lambda f: (f.error_x + 2.0 * f.error_v,), [("f", PROBLEM.features.names)], ("u",))
 LAW = gs.Law(PLANT, PROBLEM.features, PROGRAM, np.empty(0))
 PATH = gs.simulate(PROBLEM, LAW)
+WAIT = gs.Schedule([[1.0, 0.0]], [1.0])
+TASK = Task(PROBLEM, 1.0, [WAIT])
+TURNED = gs.Problem(
+    *(PLANT, PROBLEM.starts, PROBLEM.goal),
+    tolerance=0.1,
+    horizon=2.0,
+    features=lambda x, target: {"error_x": x.x - target.x, "error_v": x.v - target.v},
+)
+OTHERS = PlanCost([Task(TURNED, 1.0, [WAIT])])
 RNG = gs.stream(1)
 X = np.linspace(1.0, 2.0, 8).reshape(4, 2)
 BOX = ([0.0], [1.0])
@@ -57,6 +67,11 @@ MISTAKES = {
     "synthesize: rough": (lambda: synthesize(rough=LAW), "rough must be a Problem or None, got a Law"),
     "synthesize: folder": (lambda: synthesize(folder=3), "folder must be a str or a PathLike, got 3"),
     "synthesize: callback": (lambda: synthesize(callback=3), "callback must be a function or None, got 3"),
+    "synthesize: one task": (lambda: synthesize(plans=TASK), "plans, a PlanCost, must be a PlanCases or None, got a T"),
+    "synthesize: tasks": (lambda: synthesize(plans=[TASK]), "plans, a PlanCost, must be a PlanCases or None, got a li"),
+    "synthesize: a worth": (lambda: synthesize(plans=Worth([TASK])), "must be a PlanCases or None, got a Worth"),
+    "synthesize: a class": (lambda: synthesize(plans=PlanCost), "must be a PlanCases or None, got <class"),
+    "synthesize: other plans": (lambda: synthesize(plans=OTHERS), "the features of plan 0 have the names of the prob"),
     "an objective's name": (lambda: synthesize(objective=lambda r: r.coost), "the objective fails on rollouts"),
     "tradeoffs: a list": (lambda: tradeoffs([len, len]), "objectives, functions by name, must be a Mapping"),
     "tradeoffs: threads": (lambda: tradeoffs(threads=0), "threads must be an integer of at least 1, not 0"),
@@ -68,6 +83,18 @@ MISTAKES = {
     "problem: no horizon": (lambda: gs.Problem(PLANT, [[1, 0]], [0, 0], tolerance=1, horizon=[]), "shape (0,)"),
     "a bound": (lambda: gs.Evaluator(PROBLEM).of_program(PROGRAM, [], bound="1"), "the bound must be a number"),
     "refit: swapped": (lambda: gs.refit(LAW, PROBLEM), "problem must be a Problem, got a Law"),
+    "refit: plans": (lambda: gs.refit(PROBLEM, LAW, plans="all"), "must be a PlanCases or None, got 'all'"),
+    "refit: other plans": (lambda: gs.refit(PROBLEM, LAW, plans=OTHERS), "of plan 0 have the names of the problem's"),
+    "worth: one task": (lambda: Worth(TASK), "tasks of the worth of a law must be a list or a tuple, got a Task"),
+    "worth: problems": (lambda: Worth([PROBLEM]), "a task must be a Task, got a Problem"),
+    "worth: settings": (lambda: Worth([TASK], 5), "settings must be a PlanSettings, got 5"),
+    "worth: a program": (lambda: Worth([TASK])(PROGRAM), "law must be a Law, got a Program"),
+    "schedule: split": (lambda: gs.Schedule([], []).split(2), "shapes (0,) and (0,); expected (k, n) and (k,)"),
+    "schedule: no points": (lambda: gs.Schedule(np.empty((0, 2)), []).split(2), "has none that could be split"),
+    "schedule: count": (lambda: WAIT.split("2"), "the count of points of a schedule must be an integer of at least 0"),
+    "schedule: after": (lambda: WAIT.after("1"), "the time elapsed of a schedule must be a number, got '1'"),
+    "schedules: shapes": (lambda: Schedules(X, X), "shapes (4, 2) and (4, 2); expected (N, k, n) and (N, k)"),
+    "schedules: texts": (lambda: Schedules("a", "b"), "the points of a schedule must be numbers in rows of equal"),
     "refit: budget": (lambda: gs.refit(PROBLEM, LAW, budget=0), "budget must be an integer of at least 1, not 0"),
     "plan: swapped": (lambda: gs.plan(LAW, PROBLEM), "problem must be a Problem, got a Law"),
     "plan: seed": (lambda: gs.plan(PROBLEM, LAW, seed=1.5), "seed must be an integer of at least 0, not 1.5"),
