@@ -51,6 +51,7 @@ class FrontEntry:
     )
     complexity: int  # instructions of the formula
     reached: float  # share of the starts that are at the goal at the end
+    starts: int  # of the problem and the trials
     median_time: float  # s, of the arrivals
     worst_time: float  # s, of the arrivals
     reached_at_least: (
@@ -72,12 +73,16 @@ class SynthesisResult:
     def best(self) -> FrontEntry:
         """The entry of least cost among those that end at the goal from most starts.
 
-        Raises LawError if no law has a finite cost.
+        Where none does from all, an entry counts as one of those whose share the best one may have by chance, at 95 %:
+        one start more or less is no reason to take a slower law. Raises LawError if no law has a finite cost.
         """
         if not self.front:
             raise LawError(f"no law with a finite cost was found in {self.evaluations} evaluations")
-        most = max(entry.reached for entry in self.front)
-        return min((entry for entry in self.front if entry.reached == most), key=lambda entry: entry.cost)
+        first = max(self.front, key=lambda entry: entry.reached)
+        enough = (
+            1.0 if first.reached == 1.0 else lower_bound(round(first.reached * first.starts), first.starts)
+        )
+        return min((entry for entry in self.front if entry.reached >= enough), key=lambda entry: entry.cost)
 
     @property
     def law(self) -> Law:
@@ -298,6 +303,7 @@ def _entry(
         cost=cost if plans is None or of_plans is None else cost + plans.weight * of_plans,
         complexity=program.complexity,
         reached=float(reached.mean()),
+        starts=len(reached),
         median_time=float(np.median(arrival[reached])) if reached.any() else float("inf"),
         worst_time=float(arrival[reached].max()) if reached.any() else float("inf"),
         reached_at_least=min((lower_bound(int(each.sum()), len(each)) for each in there[1:]), default=None),

@@ -33,7 +33,9 @@ def trajectory():
 
 def _entry(complexity, cost):
     times = {"median_time": 1.0, "worst_time": 2.0}
-    return FrontEntry(None, cost=cost, complexity=complexity, reached=1.0, reached_at_least=None, **times)
+    return FrontEntry(
+        None, cost=cost, complexity=complexity, reached=1.0, starts=4, reached_at_least=None, **times
+    )
 
 
 def test_a_trajectory_shows_each_state_and_its_target(ax, trajectory):

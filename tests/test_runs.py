@@ -88,7 +88,7 @@ def test_ctrl_c_before_anything_was_found_ends_the_run(monkeypatch):
     def interrupt(*arguments, **settings):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gpsynth.batch_cost.score", interrupt)
+    monkeypatch.setattr("gpsynth.law_cost.score", interrupt)
     with pytest.raises(KeyboardInterrupt):
         synthesize(PROBLEM, encoding(PROBLEM), **SETTINGS)
 

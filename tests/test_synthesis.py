@@ -20,7 +20,7 @@ from gpsynth.plant import Plant
 from gpsynth.problem import Problem
 from gpsynth.schedule import Schedule
 from gpsynth.structure_search import StructureSearch
-from gpsynth.synthesis import SynthesisResult, synthesize
+from gpsynth.synthesis import FrontEntry, SynthesisResult, synthesize
 from gpsynth.variational_ga import VariationalGA
 from tests.test_worth import problem as cart_problem
 
@@ -117,6 +117,26 @@ def test_a_front_without_laws_is_a_sentence_when_its_law_is_wanted() -> None:
         nothing.law  # noqa: B018 a property that raises
     assert str(nothing) == nothing.table()
     assert repr(nothing) == "<SynthesisResult of 0 laws>"
+
+
+def _front(*reached: float, starts: int = 1000) -> SynthesisResult:
+    """Laws that cost the less the later they come."""
+    times = {"median_time": 1.0, "worst_time": 2.0, "reached_at_least": None}
+    entries = [
+        FrontEntry(None, cost=9.0 - size, complexity=size, reached=share, starts=starts, **times)
+        for size, share in enumerate(reached)
+    ]
+    return SynthesisResult(tuple(entries), 0, (), "")
+
+
+def test_the_best_law_arrives_from_all_starts_if_any_does() -> None:
+    assert _front(0.2, 1.0, 1.0, 0.999).best.complexity == 2
+
+
+def test_one_start_more_or_less_decides_nothing_where_no_law_arrives_from_all() -> None:
+    """998 of 1000 may be 994 by chance (Clopper-Pearson, 95 %), and is not 992."""
+    assert _front(0.998, 0.997, 0.994, 0.992).best.complexity == 2
+    assert _front(0.998, 0.997, 0.994, 0.992, starts=100_000).best.complexity == 0
 
 
 def test_threads_do_not_change_the_result() -> None:

@@ -1,11 +1,11 @@
 """`python -m tests.bench.plan_laws [FOLDER ...]`: what laws are worth to plans, beside how fast they settle.
 
 The laws: the one that ships, the polar laws, and those of the front that `python -m applications.rosbot synthesize`
-left in each folder, as far as they arrive from the most unseen starts. "training" is the worth
-(`gpsynth.planning.worth`) in generated scenarios, "unseen" in others of the same kinds; "public" is the mean of
-T_ref / T over the public scenarios and the seeds, one search of 9600 rollouts each, 0 without a plan
+left in each folder, as far as they arrive from the most unseen starts. "worth" is that of `gpsynth.planning.Worth` in
+generated scenarios, "again" in others of the same kinds; no search has seen either. "public" is the mean of T_ref / T
+over the public scenarios and the seeds, one search of 9600 rollouts each, 0 without a plan
 (`tests.bench.plan_ablation`). "cut" is how deep the first schedules, which lie along guides, lead into obstacles, the
-best of each training scenario that has some: how badly a law follows points that move. "arrives" counts arrivals from
+best of each generated scenario that has some: how badly a law follows points that move. "arrives" counts arrivals from
 1000 starts within 3 m, "of the least time" is their median over the shortest Reeds-Shepp path: a stabilizer's quality,
 which says little about that of its plans.
 """
@@ -26,9 +26,7 @@ from applications.rosbot.training import plan_worth, training_scenarios
 from gpsynth.evaluate import Evaluator
 from gpsynth.files import read_json
 from gpsynth.law import Law
-from gpsynth.planning import Objective
-from gpsynth.planning.worth import Worth
-from gpsynth.schedule import Schedules
+from gpsynth.planning import Objective, Worth
 from gpsynth.seeds import stream
 from tests.bench.measure import machine, pin
 from tests.bench.plan_ablation import PERIOD, Variant
@@ -36,7 +34,7 @@ from tests.bench.plan_peers import SHARED, Case, cases
 
 STARTS, HORIZON = 1_000, 40.0  # of stabilization, s
 SPEED, RADIUS = 0.5, 1.0  # m/s, m
-UNSEEN = 1_000  # added to the seed of the training scenarios
+SETS = (0, 1_000)  # seeds of the scenarios, those of the main job being others
 
 
 def laws_of(folders: list[Path]) -> Iterator[tuple[str, Law]]:
@@ -68,10 +66,8 @@ def first_cut(law: Law, worth: Worth) -> float:
         if task.problem.obstacles is not None and len(task.problem.obstacles.circles):
             horizon = task.budget or task.problem.horizon
             objective = Objective(Evaluator(task.problem), law, worth.settings, horizon)
-            first = (
-                Schedules.of(list(task.initial)) if not isinstance(task.initial, Schedules) else task.initial
-            )
-            depths.append(max(0.0, -float(objective.rollouts(first.points, first.dwell).clearance.max())))
+            first = objective.rollouts(task.schedules.points, task.schedules.dwell)
+            depths.append(max(0.0, -float(first.clearance.max())))
     return 100.0 * float(np.mean(depths))
 
 
@@ -88,11 +84,11 @@ def public_worth(law: Law, known: list[Case], seeds: int) -> tuple[int, float]:
 
 def row(name: str, law: Law, worths: tuple[Worth, Worth], known: list[Case], seeds: int) -> str:
     """Markdown."""
-    training, unseen = (worth(law) for worth in worths)
+    first, again = (worth(law) for worth in worths)
     solved, public = public_worth(law, known, seeds) if known else (0, np.nan)
     arrives, least = settling(law)
     return (
-        f"| {name} | {training:.3f} | {unseen:.3f} | {public:.3f} | {solved} of {len(known) * seeds} "
+        f"| {name} | {first:.3f} | {again:.3f} | {public:.3f} | {solved} of {len(known) * seeds} "
         f"| {first_cut(law, worths[0]):.1f} | {arrives} | {least:.3f} | {law.complexity} |"
     )
 
@@ -101,14 +97,14 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=2)
-    parser.add_argument("--training", type=int, default=20, help="scenarios")
+    parser.add_argument("--scenarios", type=int, default=20, help="of each set")
     parser.add_argument("folders", nargs="*", type=Path)
     asked = parser.parse_args()
     pin()
     print(machine())
     known = cases(()) if SHARED.exists() else []
-    sets = tuple(plan_worth(training_scenarios(asked.training, seed=seed)) for seed in (0, UNSEEN))
-    print("| law | training | unseen | public | solved | cut cm | arrives | of the least time | size |")
+    sets = tuple(plan_worth(training_scenarios(asked.scenarios, seed=seed)) for seed in SETS)
+    print("| law | worth | again | public | solved | cut cm | arrives | of the least time | size |")
     print(f"|---|{'---:|' * 8}")
     for name, law in laws_of(asked.folders):
         print(row(name, law, (sets[0], sets[1]), known, asked.seeds), flush=True)
