@@ -28,9 +28,9 @@ from gpsynth.program import Program
 class PlanCost:
     """The cost of a law in each task: the least over its initial schedules of what the problem says, and of obstacles.
 
-    A problem that says nothing costs the time until arrival or the end of T+; give it terminal costs, so that a plan
-    pays for not arriving as well. Raises ProblemError without tasks, for a task without schedules, or for weights that
-    make no sense.
+    A problem that says nothing costs the time until arrival or the end of T+, with `stop=False` always the latter; give
+    it terminal costs, so that a plan pays for not arriving as well. Raises ProblemError without tasks, for a task
+    without schedules, or for weights that make no sense.
     """
 
     tasks: Sequence[Task]
