@@ -84,7 +84,7 @@ def plain(value: Any, *, functions: bool = False) -> Any:
         return [plain(item, functions=functions) for item in value]
     if isinstance(value, Mapping):
         return {"map": [[key, plain(item, functions=functions)] for key, item in value.items()]}
-    if functions and callable(value):
+    if functions and hasattr(value, "__qualname__"):
         return {"function": f"{value.__module__}:{value.__qualname__}"}
     raise FileError(f"a {type(value).__name__} cannot be kept in a checkpoint: {value!r}")
 

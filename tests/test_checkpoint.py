@@ -1,5 +1,6 @@
 import json
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import pytest
@@ -122,3 +123,8 @@ def test_fingerprints_tell_settings_apart():
         cost,
     ]
     assert len({fingerprint(value) for value in different}) == len(different)
+
+
+def test_a_function_without_a_name_has_no_fingerprint():
+    with pytest.raises(FileError, match="a partial cannot be kept in a checkpoint"):
+        fingerprint(State(1.0, partial(max, 0.0)))
