@@ -1,6 +1,6 @@
 """What the ROSbot's laws are judged on for planning: small scenarios of every kind that plans find hard, generated."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -17,6 +17,7 @@ from applications.rosbot.scenario import Scenario
 from applications.rosbot.seeds import repeated, schedules_along
 from applications.rosbot.stabilization import stabilization
 from gpsynth.arrays import Floats
+from gpsynth.checks import check_kind, check_whole
 from gpsynth.errors import ScenarioError
 from gpsynth.planning import PlanCost, PlanSettings, Task, Worth
 from gpsynth.seeds import stream
@@ -33,23 +34,33 @@ _Drawn = tuple[Floats, Floats, Floats]  # start (3,), goal (3,), circles (c, 3) 
 
 def training_scenarios(count: int, *, seed: int = 0) -> list[Scenario]:
     """`count` scenarios whose goal can be reached, the kinds in turn; the same seed gives the same ones."""
+    check_whole("count of training scenarios", count, 1)
     kinds = tuple(KINDS)
     return [next(_drawn(kinds[number % len(kinds)], seed, number)) for number in range(count)]
 
 
 def plan_worth(scenarios: list[Scenario], *, seed: int = 0, settings: PlanSettings = SEARCH) -> Worth:
     """The worth of laws in scenarios: searches that begin along the guides, against the lower bounds of their times."""
+    check_kind("settings", settings, PlanSettings)
     count = int(GUIDED * settings.particles)
-    tasks = [
-        _task(each, count, settings.points, stream(seed, _INITIAL, n)) for n, each in enumerate(scenarios)
-    ]
-    return Worth(tuple(tasks), settings, seed)
+    return Worth(_tasks(scenarios, count, settings.points, (seed, _INITIAL)), settings, seed)
 
 
 def plan_cost(scenarios: list[Scenario], *, seed: int = 0, weight: float = 1.0) -> PlanCost:
     """What plans of scenarios cost with a law, in s: the best of FIRST schedules along the guides, in rough steps."""
-    tasks = [_task(each, FIRST, SEARCH.points, stream(seed, _TRIED, n)) for n, each in enumerate(scenarios)]
+    tasks = _tasks(scenarios, FIRST, SEARCH.points, (seed, _TRIED))
     return PlanCost(tuple(map(_roughly, tasks)), weight)
+
+
+def _tasks(scenarios: Sequence[Scenario], count: int, points: int, path: tuple[int, int]) -> tuple[Task, ...]:
+    """One for each scenario, with random numbers of its own from the seed and stream of the path."""
+    check_kind("scenarios", scenarios, list, tuple)
+    for scenario in scenarios:
+        check_kind("a scenario", scenario, Scenario)
+    seed, which = path
+    return tuple(
+        _task(each, count, points, stream(seed, which, number)) for number, each in enumerate(scenarios)
+    )
 
 
 def _task(scenario: Scenario, count: int, points: int, rng: np.random.Generator) -> Task:

@@ -1,12 +1,14 @@
 """The scenarios that the ROSbot's laws are judged on for planning."""
 
 import numpy as np
+import pytest
 
 from applications.rosbot.model import unicycle
 from applications.rosbot.polar_law import SATURATING, SETTLING, polar_law
 from applications.rosbot.reachability import reachability
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.training import KINDS, plan_cost, plan_worth, training_scenarios
+from gpsynth.errors import ProblemError
 from gpsynth.formula_text import read_formulas
 from gpsynth.law import Law
 
@@ -59,3 +61,20 @@ def test_plans_of_the_same_seed_cost_the_same():
         for seed in (0, 0, 1)
     )
     assert first == again != other
+
+
+@pytest.mark.parametrize(
+    ("make", "sentence"),
+    [
+        (
+            lambda: training_scenarios(0),
+            "count of training scenarios must be an integer of at least 1, not 0",
+        ),
+        (lambda: plan_cost(training_scenarios(1)[0]), "scenarios must be a list or a tuple, got a Scenario"),
+        (lambda: plan_cost([3]), "a scenario must be a Scenario, got 3"),
+        (lambda: plan_worth(training_scenarios(1), settings=3), "settings must be a PlanSettings, got 3"),
+    ],
+)
+def test_what_is_wrong_is_said(make, sentence):
+    with pytest.raises(ProblemError, match=sentence):
+        make()
