@@ -96,10 +96,8 @@ class Evaluator:
         check_law(self.problem, law)
         plans = self._plans(points, dwell, reach)._replace(toll=toll or _NO_TOLL)
         horizon = self.problem.horizon if horizon is None else horizon
-        clock, picks = (
-            self.until(horizon, reach=reach),
-            _picks(len(plans.points), len(self.problem.starts), 2),
-        )
+        clock = self.until(horizon, reach=reach)
+        picks = _picks(len(plans.points), len(self.problem.starts), 2)
         return self._roll(law.program, law.parameters[np.newaxis], plans, clock, picks)
 
     def of_plans(

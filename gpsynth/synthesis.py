@@ -297,10 +297,13 @@ def _entry(
     there = [evaluator.stays(each)[0] for evaluator, each in zip(evaluators, rollouts, strict=True)]
     reached = np.concatenate(there)
     cost = float(np.concatenate([objective(each)[0] for each in rollouts]).mean())
-    of_plans = None if plans is None else float(plans(program, values[np.newaxis]).mean())
+    of_plans = None
+    if plans is not None:
+        of_plans = float(plans(program, values[np.newaxis]).mean())
+        cost += plans.weight * of_plans
     return FrontEntry(
         law=Law(problem.plant, problem.features, program, values),
-        cost=cost if plans is None or of_plans is None else cost + plans.weight * of_plans,
+        cost=cost,
         complexity=program.complexity,
         reached=float(reached.mean()),
         starts=len(reached),

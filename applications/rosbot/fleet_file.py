@@ -10,7 +10,7 @@ from applications.rosbot.fleet import FleetReport
 from applications.rosbot.plan_file import plan_document
 from applications.rosbot.scenario import Scenario
 from applications.rosbot.scenario_file import FORMAT as SCENARIO_FORMAT
-from applications.rosbot.scenario_file import json_of, scenario_of, text_of
+from applications.rosbot.scenario_file import json_of, read_with, scenario_of
 from gpsynth.errors import ScenarioError
 from gpsynth.files import write_json
 
@@ -29,12 +29,7 @@ class Fleet:
 
 def read_fleet(path: str | Path) -> Fleet:
     """The fleet in a file; ScenarioError names the file, the robot, the field and the value that is wrong."""
-    if not isinstance(path, str | Path):
-        raise ScenarioError(f"a fleet is read from a str or a Path, got {path!r}")
-    try:
-        return parse_fleet(text_of(Path(path)), name=Path(path).stem, folder=Path(path).parent)
-    except ScenarioError as error:
-        raise ScenarioError(f"{path}: {error}") from None
+    return read_with(parse_fleet, path, "a fleet")
 
 
 def parse_fleet(text: str | bytes, *, name: str = "", folder: Path = Path()) -> Fleet:

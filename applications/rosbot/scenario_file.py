@@ -4,9 +4,10 @@ import json
 import math
 import re
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, TypeVar
 
 import msgspec
 import numpy as np
@@ -25,6 +26,7 @@ from gpsynth.errors import ScenarioError
 from gpsynth.files import SURROGATES, check_readable
 
 FORMAT = "rosbot-scenario/1"
+Parsed = TypeVar("Parsed")
 LARGEST_FILE = 4_000_000  # bytes
 NAME = re.compile("[A-Za-z_]{1,60}")  # what fields are called: nothing that a complaint could not repeat
 CHOICES = MappingProxyType(
@@ -81,10 +83,15 @@ class _Document(Strict):
 
 def read_scenario(path: str | Path) -> Scenario:
     """The scenario in a file; ScenarioError names the file, the field and the value that is wrong."""
+    return read_with(parse_scenario, path, "a scenario")
+
+
+def read_with(parse: Callable[..., Parsed], path: str | Path, what: str) -> Parsed:
+    """What `parse` makes of a file's text, name and folder; ScenarioError names the file."""
     if not isinstance(path, str | Path):
-        raise ScenarioError(f"a scenario is read from a str or a Path, got {path!r}")
+        raise ScenarioError(f"{what} is read from a str or a Path, got {path!r}")
     try:
-        return parse_scenario(text_of(Path(path)), name=Path(path).stem, folder=Path(path).parent)
+        return parse(_text_of(Path(path)), name=Path(path).stem, folder=Path(path).parent)
     except ScenarioError as error:
         raise ScenarioError(f"{path}: {error}") from None
 
@@ -125,7 +132,7 @@ def _scenario(document: _Document, name: str, folder: Path) -> Scenario:
     )
 
 
-def text_of(path: Path) -> bytes:
+def _text_of(path: Path) -> bytes:
     """What stands in a file; ScenarioError if it cannot be read or is too large."""
     try:
         check_readable(path)

@@ -117,10 +117,8 @@ def _dynamics(seed: int, which: int, count: int, *, quick: bool = False) -> Prob
     plant, starts = dynamic_unicycle(), training_poses(stream(seed, which), count)
     draws = random_draws(plant, stream(seed, which, _DRAWS), count, delay=DELAY)
     lags = [name.startswith("tau") for name in plant.parameter_names]
-    parameters, delay = (
-        np.where(lags, np.maximum(draws.parameters, LAG), draws.parameters),
-        draws.delay.copy(),
-    )
+    parameters = np.where(lags, np.maximum(draws.parameters, LAG), draws.parameters)
+    delay = draws.delay.copy()
     if quick:
         parameters[1::2] = [QUICK.get(name, LAG) for name in plant.parameter_names]
         delay[1::2] = 0.0

@@ -20,6 +20,7 @@ from gpsynth.arrays import Floats
 from gpsynth.checks import check_kind, check_whole
 from gpsynth.errors import ScenarioError
 from gpsynth.planning import PlanCost, PlanSettings, Task, Worth
+from gpsynth.program import Program
 from gpsynth.seeds import stream
 
 SEARCH = PlanSettings(particles=32, iterations=10, rounds=5)
@@ -49,7 +50,8 @@ def plan_worth(scenarios: list[Scenario], *, seed: int = 0, settings: PlanSettin
 def plan_cost(scenarios: list[Scenario], *, seed: int = 0, weight: float = 1.0) -> PlanCost:
     """What plans of scenarios cost with a law, in s: the best of FIRST schedules along the guides, in rough steps."""
     tasks = _tasks(scenarios, FIRST, SEARCH.points, (seed, _TRIED))
-    return PlanCost(tuple(map(_roughly, tasks)), weight)
+    terminal = stabilization(np.zeros((1, 3))).terminal
+    return PlanCost([_roughly(task, terminal) for task in tasks], weight)
 
 
 def _tasks(scenarios: Sequence[Scenario], count: int, points: int, path: tuple[int, int]) -> tuple[Task, ...]:
@@ -74,9 +76,8 @@ def _task(scenario: Scenario, count: int, points: int, rng: np.random.Generator)
     return Task(problem, lower_bound(scenario), initial, min(LOOSE * guides[0].duration, problem.horizon))
 
 
-def _roughly(task: Task) -> Task:
-    """In longer steps, and what does not arrive pays for it as in stage 1."""
-    terminal = stabilization(np.zeros((1, 3))).terminal
+def _roughly(task: Task, terminal: Program | None) -> Task:
+    """In longer steps, and what does not arrive pays for it, as in stage 1."""
     rough = replace(task.problem, period=ROUGH, step=ROUGH, method="heun", terminal=terminal)
     return replace(task, problem=rough)
 
@@ -135,15 +136,15 @@ def _scattered(rng: np.random.Generator) -> _Drawn:
 def _walled(rng: np.random.Generator) -> _Drawn:
     """A wall between start and goal, to be passed at the nearer end."""
     middle, half = rng.uniform(-0.4, 0.4), rng.uniform(0.8, 1.1)
-    return _across(rng, [_row([1.3, middle - half], [1.3, middle + half])])
+    return _across(rng, [circles_in_a_row([1.3, middle - half], [1.3, middle + half])])
 
 
 def _trapped(rng: np.random.Generator) -> _Drawn:
     """The start within three walls, the goal behind the middle one."""
     x, half, depth = rng.uniform(0.9, 1.3), rng.uniform(0.6, 0.75), rng.uniform(0.7, 1.0)
     corners = [x, -half], [x, half]
-    arms = [_row(corner, [x - depth, corner[1]]) for corner in corners]
-    return _across(rng, [_row(*corners), *arms])
+    arms = [circles_in_a_row(corner, [x - depth, corner[1]]) for corner in corners]
+    return _across(rng, [circles_in_a_row(*corners), *arms])
 
 
 def _across(rng: np.random.Generator, rows: list[Floats]) -> _Drawn:
@@ -152,8 +153,8 @@ def _across(rng: np.random.Generator, rows: list[Floats]) -> _Drawn:
     return start, goal, np.vstack(rows)
 
 
-def _row(first: list[float], last: list[float], radius: float = 0.15) -> Floats:
-    """Circles in a row, each less than a radius and a half from the next."""
+def circles_in_a_row(first: Sequence[float], last: Sequence[float], radius: float = 0.15) -> Floats:
+    """Circles (c, 3) of a radius from one place (m) to another, each less than a radius and a half from the next."""
     count = 2 + int(np.hypot(*np.subtract(last, first)) / (1.5 * radius))
     return np.column_stack([np.linspace(first, last, count), np.full(count, radius)])
 

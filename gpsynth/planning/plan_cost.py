@@ -35,9 +35,7 @@ class PlanCost:
 
     tasks: Sequence[Task]
     weight: float = 1.0  # of the mean over the tasks, beside that over the starts of a stabilizer
-    gamma: float = (
-        PlanSettings.gamma
-    )  # s that C_obs of eq. 17 costs, which is 1 and more where a path is not clear
+    gamma: float = PlanSettings.gamma  # s that C_obs of eq. 17 costs, at least 1 where a path is not clear
     margin: float = PlanSettings.margin  # m, clearance that counts as none
 
     def __post_init__(self) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from applications.rosbot.reachability import reachability
 from applications.rosbot.scenario import Scenario
+from applications.rosbot.training import circles_in_a_row
 from gpsynth.arrays import Floats
 from gpsynth.errors import ScenarioError
 from gpsynth.seeds import stream
@@ -138,7 +139,7 @@ def _narrow(rng: Rng, tight: bool) -> Drawn:
 
 def _wall(rng: Rng, tight: bool) -> Drawn:
     middle, half = rng.uniform(-0.4, 0.4), rng.uniform(0.7, 1.3)
-    wall = _row([1.2, middle - half], [1.2, middle + half], rng.uniform(0.1, 0.2))
+    wall = circles_in_a_row([1.2, middle - half], [1.2, middle + half], rng.uniform(0.1, 0.2))
     low, high = (middle - half - 0.15 - wall[0, 2], middle + half + 0.15 + wall[0, 2])
     # tight: within the bounds only just past both ends
     room = rng.uniform(0.005, 0.03) if tight else rng.uniform(0.5, 1.2)
@@ -166,7 +167,10 @@ def _utrap(rng: Rng, tight: bool) -> Drawn:
         half, depth = radius + ROBOT + rng.uniform(0.02, 0.1), rng.uniform(0.8, 1.0)
     back = 1.5
     corners = [back, -half], [back, half]
-    rows = [_row(*corners, radius), *(_row(corner, [back - depth, corner[1]], radius) for corner in corners)]
+    rows = [
+        circles_in_a_row(*corners, radius),
+        *(circles_in_a_row(corner, [back - depth, corner[1]], radius) for corner in corners),
+    ]
     start = np.array(
         [back - depth + rng.uniform(-0.2, 0.4), rng.uniform(-0.05, 0.05), rng.uniform(-0.5, 0.5)]
     )
@@ -216,12 +220,6 @@ def _enclosed(rng: Rng, tight: bool) -> Drawn:
     ring = goal[:2] + radius * np.column_stack([np.cos(angles), np.sin(angles)])
     circles = np.column_stack([ring, np.full(count, size)])
     return Drawn(np.zeros(3), goal, np.vstack([circles, [1.0, 0.5, 0.2]]), np.array([-1.0, 4.0, -1.0, 4.0]))
-
-
-def _row(first: list[float], last: list[float], radius: float) -> Floats:
-    """Circles in a row, each less than a radius and a half from the next."""
-    count = 2 + int(np.hypot(*np.subtract(last, first)) / (1.5 * radius))
-    return np.column_stack([np.linspace(first, last, count), np.full(count, radius)])
 
 
 KINDS: Mapping[str, Callable[[Rng, bool], Drawn]] = MappingProxyType(
